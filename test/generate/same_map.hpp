@@ -9,7 +9,7 @@
 
 namespace coupler::testing {
 
-static_assert(model_version == 13, "Compare the new fields of the model here, too");
+static_assert(model_version == 14, "Compare the new fields of the model here, too");
 
 /// What fields_of() lists.
 template <class Struct>
@@ -61,6 +61,11 @@ inline void expect_same(const Point& a, const Point& b) {
   EXPECT_TRUE(std::equal(a.values.begin(), a.values.end(), b.values.begin(), b.values.end(),
                          [](const NamedValue& one, const NamedValue& other) {
                            return one.value == other.value && one.name == other.name;
+                         }));
+  expect_same_fields(a.faults, b.faults);
+  EXPECT_TRUE(std::equal(a.invalid.begin(), a.invalid.end(), b.invalid.begin(), b.invalid.end(),
+                         [](const RawRange& one, const RawRange& other) {
+                           return one.first == other.first && one.last == other.last;
                          }));
   EXPECT_EQ(a.pulse, b.pulse);
   expect_same(a.host, b.host);

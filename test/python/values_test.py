@@ -57,11 +57,54 @@ class Values(OfADevice):
         self.device.tables["holding_registers"][20] = 9  # what has no name is a number
         self.assertEqual((press.mode.read(), isinstance(press.mode.read(), enum.Enum)), (9, False))
 
+    def test_what_the_map_calls_invalid_is_no_value(self):
+        press = self.connected(PRESS + """\
+    temp:    {address: 40, type: INT, scale: 0.1, invalid: 0x8000}
+    bit:     {address: 41, type: BOOL, bit: 1, access: read, invalid: 0xFFFF}
+    several: {address: 42, type: UDINT, order: CDAB, count: 2, access: read, invalid: [[0xFFFF0000, 0xFFFFFFFF]]}
+    half:    {address: 46, type: SINT, offset: high, access: read, invalid: -1}
+""")
+        registers = self.device.tables["holding_registers"]
+        registers[40:47] = [0x8000, 0xFFFF, 0, 0, 1, 0xFFFF, 0xFF01]
+        every = press.read_all()
+        for point in (press.temp, press.bit, press.several, press.half):
+            self.assertEqual(self.raises("NoValue", point.read), f"{point.spec.name} has no value: the device says so")
+            self.assertIsNone(every[point.spec.name])
+        registers[40:47] = [215, 2, 7, 1, 0, 0xFFFE, 0x0201]
+        self.assertEqual([point.read() for point in (press.temp, press.bit, press.several, press.half)],
+                         [21.5, True, [0x10007, 0xFFFE0000], 2])
+        self.assertEqual(self.raises("Refused", press.temp.write, -3276.8),
+                         "temp: refused: -32768 is what the device gives for no value; send another value")
+
+    def test_a_raw_value_beyond_its_ends_is_a_fault(self):
+        press = self.connected(PRESS + """\
+    bar: {address: 70, type: UINT, access: read, scale: {raw: [4000, 20000], value: [0, 10]}, fault_below: 3600, fault_above: 21000}
+""")
+        for raw in (3599, 21001):
+            self.device.tables["holding_registers"][70] = raw
+            self.raises("NoValue", press.bar.read)
+        self.device.tables["holding_registers"][70] = 12000
+        self.assertEqual(press.bar.read(), 5)
+
+    def test_a_scale_has_its_power_of_ten_from_another_point(self):
+        press = self.connected(PRESS + """\
+    power:    {address: 50, type: INT, access: read, scale: {gain: 2, offset: 1, exponent_of: power_sf}}
+    power_sf: {address: 60, type: INT, access: read, invalid: 0x8000}
+""")
+        for power, value in ((0, 1235.0), (1, 12341.0), (-2 & 0xFFFF, 13.34)):
+            self.device.tables["holding_registers"][50], self.device.tables["holding_registers"][60] = 617, power
+            self.assertAlmostEqual(press.power.read(), value)
+            self.assertAlmostEqual(press.read_all()["power"], value)
+        for power in (0x8000, 31):
+            self.device.tables["holding_registers"][60] = power
+            self.raises("NoValue", press.power.read)
+            self.assertIsNone(press.read_all()["power"])
+
     def test_every_error_comes_back_from_pickle(self):
         self.press()
         module = self.module
         errors = [kind("why") for kind in (module.CouplerError, module.NotConnected, module.OtherMap, module.Lost,
-                                           module.NotTaken, module.Refused)]
+                                           module.NotTaken, module.NoValue, module.Refused)]
         errors += [module.ExceptionReply(2), module.ExceptionReply(4, "speed: ")]
         named = {kind for kind in vars(module).values() if isinstance(kind, type) and issubclass(kind, module.CouplerError)}
         self.assertEqual({type(error) for error in errors}, named)

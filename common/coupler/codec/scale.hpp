@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "coupler/codec/format.hpp"
 
@@ -12,8 +13,12 @@ namespace coupler::codec {
 struct Scale {
   double gain = 1;  ///< finite, not 0
   double offset = 0;
+  /// The point whose value is the power of ten by which the host multiplies the gain, see map/published.hpp.
+  /// The functions of this file take it as 0.
+  std::string_view exponent_of{};
 
-  constexpr bool present() const { return gain != 1 || offset != 0; }
+  constexpr bool present() const { return gain != 1 || offset != 0 || has_exponent(); }
+  constexpr bool has_exponent() const { return !exponent_of.empty(); }
 };
 
 /// The types that can be scaled: SINT … ULINT, REAL, LREAL.

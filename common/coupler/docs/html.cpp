@@ -93,7 +93,10 @@ Cell type(const Document&, const PointDescription& point) {
           joined({point.text, prefixed("order ", point.order)})};
 }
 
-Cell range(const Document&, const PointDescription& point) { return {point.range, point.scale}; }
+Cell range(const Document&, const PointDescription& point) {
+  return {point.range, joined({html(point.scale), prefixed("no value: ", point.invalid),
+                               prefixed("fault: raw ", point.faults)})};
+}
 
 Cell units(const Document&, const PointDescription& point) { return {html(point.units)}; }
 

@@ -52,7 +52,9 @@ constexpr std::array columns{
     Column{"order", false, [](auto&, auto& point) { return point.order; }},
     Column{"range", false, [](auto&, auto& point) { return point.range; }},
     Column{"units", false, [](auto&, auto& point) { return markdown(point.units); }},
-    Column{"scale", false, [](auto&, auto& point) { return point.scale; }},
+    Column{"scale", false, [](auto&, auto& point) { return markdown(point.scale); }},
+    Column{"no value", false, [](auto&, auto& point) { return point.invalid; }},
+    Column{"fault (raw)", false, [](auto&, auto& point) { return point.faults; }},
     Column{"access", false, access_cell},
     Column{"behind it", false,
            [](auto&, auto& point) {

@@ -82,6 +82,8 @@ PointDescription describe(const Point& point, int line) {
   out.order = order_of(point);
   if (point.count > 1) out.count = fmt::to_string(point.count);
   out.scale = words(point.scale);
+  out.invalid = words(point.invalid);
+  out.faults = words(point.faults);
   out.units = point.units;
   out.range = range_words(point);
   out.access = words(point.access);

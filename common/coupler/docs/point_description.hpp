@@ -24,6 +24,8 @@ struct PointDescription {
   std::string order;    ///< "CDAB", registers only
   std::string count;    ///< "4", of an array
   std::string scale;    ///< "raw × 0.1 - 40"
+  std::string invalid;  ///< "0x8000, 0xFFF0 to 0xFFFF": what the device gives for no value
+  std::string faults;   ///< "below 3600, above 21000": of the raw value
   std::string units;
   std::string range;           ///< of the published value, "-32768 … 32767"
   std::string access;          ///< "read", "write", "read, write"

@@ -92,6 +92,7 @@ std::string words(std::chrono::nanoseconds duration) {
 std::string words(const codec::Scale& scale) {
   if (!scale.present()) return {};
   std::string text = scale.gain == 1 ? "raw" : "raw × " + number(scale.gain);
+  if (scale.has_exponent()) text += fmt::format(" × 10^{}", scale.exponent_of);
   if (scale.offset > 0) text += " + " + number(scale.offset);
   if (scale.offset < 0) text += " - " + number(-scale.offset);
   return text;
@@ -114,6 +115,20 @@ std::string details(const Line& line) {
   return text;
 }
 
+std::string words(Span<const RawRange> ranges) {
+  std::string text;
+  for (const auto& [first, last] : ranges)
+    add(text, fmt::format("0x{:X}", first) + (first == last ? "" : fmt::format(" to 0x{:X}", last)));
+  return text;
+}
+
+std::string words(const Faults& faults) {
+  std::string text;
+  if (faults.below != Faults::no_below) add(text, "below " + number(faults.below));
+  if (faults.above != Faults::no_above) add(text, "above " + number(faults.above));
+  return text;
+}
+
 std::string words(const EdgeOf& edge) {
   switch (edge.edge) {
     case Edge::rising: return fmt::format("rising edges of {}", edge.input);
@@ -132,6 +147,7 @@ std::string range_words(const Point& point) {
     return list;
   }
   const auto [min, max, nonfinite] = point.bounds;
+  if (point.scale.has_exponent()) return {};  // only the device knows it
   if (min != Bounds::no_min && max != Bounds::no_max) return number(min) + " … " + number(max);
   const auto [least, most] = codec::published_range(type, point.scale);
   // The channel takes no more, whatever the register could hold.

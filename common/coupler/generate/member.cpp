@@ -57,7 +57,7 @@ std::string value_range(const Point& point) {
   if (type == Type::STRING)
     return fmt::format(", at most {} bytes of {}", point.format.length,
                        codec::to_string(point.format.encoding));
-  if (type == Type::BOOL || type == Type::CHAR) return {};
+  if (type == Type::BOOL || type == Type::CHAR || point.scale.has_exponent()) return {};
   const auto [min, max, nonfinite] = point.bounds;
   const bool bounded = min != Bounds::no_min || max != Bounds::no_max;
   if (bounded || point.scale.present()) {
@@ -142,6 +142,7 @@ std::string documentation(const Point& point) {
   if (point.count > 1) out += fmt::format(" × {}", point.count);
   out += value_range(point);
   if (!point.units.empty()) out += " " + comment(point.units);
+  if (point.scale.has_exponent()) out += fmt::format(" × 10^{}", comment(point.scale.exponent_of));
   return out + fmt::format("; {}.", place(point));
 }
 

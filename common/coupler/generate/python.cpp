@@ -104,6 +104,14 @@ std::string format_arguments(const Point& point) {
   if (point.scale.present())
     out += fmt::format(", gain={}, offset={}", codec::decimal(point.scale.gain),
                        codec::decimal(point.scale.offset));
+  if (point.scale.has_exponent()) out += ", exponent_of=" + python_literal(point.scale.exponent_of);
+  if (point.faults.below != Faults::no_below) out += ", fault_below=" + codec::decimal(point.faults.below);
+  if (point.faults.above != Faults::no_above) out += ", fault_above=" + codec::decimal(point.faults.above);
+  if (!point.invalid.empty()) {
+    out += ", invalid=(";
+    for (const auto& [first, last] : point.invalid) out += fmt::format("(0x{:X}, 0x{:X}), ", first, last);
+    out += ')';
+  }
   return out;
 }
 
@@ -115,7 +123,7 @@ std::string allowed_arguments(const Point& point, std::string_view member) {
   if (min != Bounds::no_min) out += ", least=" + bound(point, min);
   if (max != Bounds::no_max) out += ", most=" + bound(point, max);
   if (nonfinite) out += ", nonfinite=True";
-  if (limits_values(point)) out += ", allowed=" + python_literal(allowed_text(point));
+  if (forbids_values(point)) out += ", allowed=" + python_literal(allowed_text(point));
   if (!point.values.empty()) out += fmt::format(", names=values.{}", member);
   return out;
 }

@@ -37,6 +37,7 @@ using ::coupler::OnReconnect;
 using ::coupler::OnShutdown;
 using ::coupler::Point;
 using ::coupler::Poll;
+using ::coupler::RawRange;
 using ::coupler::Role;
 using ::coupler::Verify;
 using ::coupler::Safe;
@@ -121,14 +122,18 @@ std::string values_name(const Point& point, std::size_t index) {
   return point.values.empty() ? "{}" : fmt::format("values_of_point_{}", index);
 }
 
+std::string invalid_name(const Point& point, std::size_t index) {
+  return point.invalid.empty() ? "{}" : fmt::format("invalid_of_point_{}", index);
+}
+
 /// Returns the members behind counter and latched, which few points have: count, scale, iio, pwm, safe
-/// registers, read address, bounds, names of values, pulse, host.
+/// registers, read address, bounds, names of values, invalid values, faults, pulse, host.
 std::string rest(const Point& point, std::size_t index) {
-  return fmt::format("{}, {}, {}, {}, {}, {}, {}, {}, {}ms, {}", point.count, aggregate(point.scale),
+  return fmt::format("{}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}ms, {}", point.count, aggregate(point.scale),
                      aggregate(point.iio), aggregate(point.pwm), registers(point.safe_value),
                      point.read_address ? fmt::format("::std::uint16_t{{{}}}", *point.read_address) : "{}",
-                     aggregate(point.bounds), values_name(point, index), point.pulse.count(),
-                     host(point.host));
+                     aggregate(point.bounds), values_name(point, index), invalid_name(point, index),
+                     aggregate(point.faults), point.pulse.count(), host(point.host));
 }
 
 /// All that most points do not have.
@@ -162,6 +167,8 @@ std::string row(const Unreadable& area) {
 std::string row(const NamedValue& named) {
   return fmt::format("    {{{}, {}}},\n", code(named.value), literal(named.name));
 }
+
+std::string row(const RawRange& range) { return fmt::format("    {{{}U, {}U}},\n", range.first, range.last); }
 
 /// Returns the row of a write by the host for the watchdog of a coupler.
 std::string row(const WatchdogSequences::Write& write) {
@@ -238,6 +245,8 @@ std::string values(const Map& map) {
     const Point& point = map.points[i];
     out += array("NamedValue " + values_name(point, i), comment(point.name) + ": what its values are called.",
                  point.values);
+    out += array("RawRange " + invalid_name(point, i), comment(point.name) + ": what is no value.",
+                 point.invalid);
   }
   return out;
 }
@@ -262,7 +271,7 @@ std::string table_source(const Map& map, const Provenance& provenance) {
           array("Point points",
                 "Name, table, address, format, access; initial registers, safe, line; description, units, "
                 "and what few points have: counter, latched, count, scale, iio, pwm, safe registers, read "
-                "address, bounds, names of values, host.",
+                "address, bounds, names of values, invalid values, faults, pulse, host.",
                 map.points)),
       arg("values", values(map)), arg("sim", array("SimWire sim", keys_of<SimWire>(), map.sim)),
       arg("allow", array("::std::string_view allow", "Who may connect.", map.service.allow)),

@@ -32,8 +32,10 @@ std::string place(const Point& point) {
 /// Returns the value as a map has it. The hexadecimal floats of the canonical line are for machines.
 std::string scale(const Point& point) {
   if (!point.scale.present()) return "none";
-  if (point.scale.offset == 0) return fmt::to_string(point.scale.gain);
-  return fmt::format("{{gain: {}, offset: {}}}", point.scale.gain, point.scale.offset);
+  const auto& [gain, offset, exponent_of] = point.scale;
+  if (offset == 0 && exponent_of.empty()) return fmt::to_string(gain);
+  return fmt::format("{{gain: {}, offset: {}{}{}}}", gain, offset,
+                     exponent_of.empty() ? "" : ", exponent_of: ", exponent_of);
 }
 
 std::vector<FieldChange> changed_fields(const Point& older, const Point& newer) {

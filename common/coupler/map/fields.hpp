@@ -156,6 +156,12 @@ constexpr auto fields_of(const Bounds*) {
                          field("allow_nonfinite", &Bounds::allow_nonfinite, change, About::writing));
 }
 
+constexpr auto fields_of(const Faults*) {
+  constexpr std::string_view change = "faults-changed";
+  return std::make_tuple(field("fault_below", &Faults::below, change, About::reading),
+                         field("fault_above", &Faults::above, change, About::reading));
+}
+
 constexpr auto fields_of(const Line*) {
   return std::make_tuple(field("chip", &Line::chip), field("offset", &Line::offset),
                          field("name", &Line::name), field("active_low", &Line::active_low),
@@ -164,7 +170,8 @@ constexpr auto fields_of(const Line*) {
 }
 
 constexpr auto fields_of(const codec::Scale*) {
-  return std::make_tuple(field("gain", &codec::Scale::gain), field("offset", &codec::Scale::offset));
+  return std::make_tuple(field("gain", &codec::Scale::gain), field("offset", &codec::Scale::offset),
+                         field("exponent_of", &codec::Scale::exponent_of));
 }
 
 constexpr auto fields_of(const EdgeOf*) {

@@ -40,7 +40,8 @@ std::string order(const Point& point) {
 std::string scale(const Point& point) {
   std::array<char, 64> text{};
   std::snprintf(text.data(), text.size(), "%a:%a", point.scale.gain, point.scale.offset);
-  return text.data();
+  return point.scale.has_exponent() ? fmt::format("{}:{}", text.data(), point.scale.exponent_of)
+                                    : text.data();
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace coupler {
 
 /// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
 /// not compile.
-constexpr int model_version = 13;
+constexpr int model_version = 14;
 
 /// The place of the coupler. ROS parameters and arguments override it.
 struct Connection {

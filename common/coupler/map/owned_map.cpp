@@ -28,6 +28,10 @@ Span<const NamedValue> OwnedMap::keep(const std::vector<NamedValue>& values) {
   return values_.emplace_back(values.begin(), values.end());
 }
 
+Span<const RawRange> OwnedMap::keep(const std::vector<RawRange>& ranges) {
+  return raw_ranges_.emplace_back(ranges.begin(), ranges.end());
+}
+
 Span<const Unreadable> OwnedMap::keep(const std::vector<Unreadable>& areas) {
   return areas_.emplace_back(areas.begin(), areas.end());
 }

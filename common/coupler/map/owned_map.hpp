@@ -31,6 +31,7 @@ class OwnedMap {
   Span<const std::uint16_t> keep(const std::vector<std::uint16_t>& registers);
   /// Keeps the list; its names must be kept, too.
   Span<const NamedValue> keep(const std::vector<NamedValue>& values);
+  Span<const RawRange> keep(const std::vector<RawRange>& ranges);
   Span<const Unreadable> keep(const std::vector<Unreadable>& areas);
   Span<const WatchdogSequences::Write> keep(const std::vector<WatchdogSequences::Write>& sequence);
   /// Keeps the list; what its elements view must be kept, too.
@@ -49,6 +50,7 @@ class OwnedMap {
   std::pmr::deque<std::pmr::vector<std::uint16_t>> registers_;
   std::pmr::deque<std::pmr::vector<std::string_view>> lists_;
   std::pmr::deque<std::pmr::vector<NamedValue>> values_;
+  std::pmr::deque<std::pmr::vector<RawRange>> raw_ranges_;
   std::pmr::deque<std::pmr::vector<Unreadable>> areas_;
   std::pmr::deque<std::pmr::vector<WatchdogSequences::Write>> sequences_;
   std::pmr::vector<Role> roles_;

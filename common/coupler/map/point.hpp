@@ -102,6 +102,26 @@ struct NamedValue {
   std::string_view name;  ///< an identifier
 };
 
+/// Raw values of a point, from `first` to `last`: its bits as an unsigned number of the type's width, or
+/// those of the whole register if it is a BOOL.
+struct RawRange {
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;
+};
+
+/// The raw numbers between which a value is one: beyond them something is broken, such as the wire of a
+/// 4 to 20 mA signal. They do not concern how a value stands in its registers, so they are not in the
+/// fingerprint.
+struct Faults {
+  static constexpr double no_below = std::numeric_limits<double>::lowest();
+  static constexpr double no_above = std::numeric_limits<double>::max();
+
+  double below = no_below;  ///< a smaller number is a fault
+  double above = no_above;  ///< a greater number is a fault
+
+  constexpr bool present() const { return below != no_below || above != no_above; }
+};
+
 /// One named value of a coupler. A literal type, so that a generated table is constant data.
 struct Point {
   std::string_view name;  ///< a valid ROS name, unique in the map
@@ -131,6 +151,10 @@ struct Point {
   Bounds bounds{};
   /// The names of the values of an integer without a scale, in ascending order. Other values are not written.
   Span<const NamedValue> values{};
+  /// Registers: what the device gives where it has no value. The host does not publish it. It does not
+  /// concern how values stand in their registers, so it is not in the fingerprint.
+  Span<const RawRange> invalid{};
+  Faults faults{};  ///< SINT … ULINT, REAL, LREAL
   /// Coils of a node: how long 1 is driven; 0: until it is written otherwise. The host does not restore or
   /// verify what ends by itself.
   std::chrono::milliseconds pulse{0};

@@ -23,6 +23,12 @@ std::string bounds_text(const Point& point) {
   return fmt::format("{:g} to {:g}{}", min, max, units);
 }
 
+std::string number_text(const Point& point, const std::uint16_t* registers) {
+  if (codec::is_scalable(point.format.type))
+    return fmt::format("{:.15g}{}", codec::published(registers, point.format, point.scale), units_of(point));
+  return codec::to_string(codec::decode(registers, point.format));
+}
+
 std::string value_names_text(const Point& point) {
   std::string text;
   for (const NamedValue& named : point.values) {
@@ -69,6 +75,9 @@ std::string forbidden_text(const Point& point, const ForbiddenValue& value) {
     case Forbidden::nonfinite: return "a number that is not finite (NaN or infinity)";
     case Forbidden::below_min: return fmt::format("{:g}{} is below the minimum", number, units_of(point));
     case Forbidden::above_max: return fmt::format("{:g}{} is above the maximum", number, units_of(point));
+    case Forbidden::invalid:
+      return fmt::format("{} is what the device gives for no value ('invalid' in the map)",
+                         number_text(point, value.registers));
     case Forbidden::unnamed:
       return fmt::format("{} is not one of its values",
                          codec::to_string(codec::decode(value.registers, point.format)));
@@ -78,7 +87,8 @@ std::string forbidden_text(const Point& point, const ForbiddenValue& value) {
 
 std::string allowed_text(const Point& point) {
   if (!point.values.empty()) return value_names_text(point);
-  return limits_values(point) ? bounds_text(point) : "a finite number";
+  if (limits_values(point)) return bounds_text(point);
+  return point.invalid.empty() ? "a finite number" : "another value";
 }
 
 }  // namespace coupler

@@ -12,6 +12,7 @@
 #include "coupler/map/allowed_values.hpp"
 #include "coupler/map/plain_value.hpp"
 #include "coupler/map/point.hpp"
+#include "coupler/map/published.hpp"
 
 namespace coupler {
 
@@ -40,6 +41,10 @@ struct TypedValue : PlainValue<T> {
 
 template <>
 struct TypedValue<double> : PlainValue<double> {
+  /// `registers`: host_registers(point) of them.
+  static double decode(const std::uint16_t* registers, const Point& point) {
+    return point.scale.present() ? published(registers, point) : PlainValue<double>::decode(registers, point);
+  }
   static std::string encode(double value, const Point& point, std::uint16_t* registers) {
     if (point.scale.present()) return encode_scaled(value, point, registers);
     (void)PlainValue<double>::encode(value, point, registers);

@@ -37,6 +37,14 @@ bool is_at(Table table, const Unreadable& area, Range range) {
   return area.table == table && area.range.overlaps(range);
 }
 
+void sort_by_place(const Map& map, std::vector<std::uint32_t>& points) {
+  const auto place = [&](std::uint32_t i) {
+    return std::tuple(map.points[i].table, read_range(map.points[i]).start(), i);
+  };
+  std::sort(points.begin(), points.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
+}
+
 }  // namespace
 
 std::optional<NotRead> why_not_read(const Map& map, const Point& point) {
@@ -48,7 +56,7 @@ std::optional<NotRead> why_not_read(const Map& map, const Point& point) {
   return std::nullopt;
 }
 
-Planner::Planner(const Map& map) : map_(map) {
+Planner::Planner(const Map& map) : map_(map), scaled_(points_with_exponent(map)) {
   std::array<std::vector<Range>, tables.size()> readable;
   std::array<std::vector<Range>, tables.size()> write_only;
   std::array<std::vector<Range>, tables.size()> unreadable;
@@ -68,17 +76,45 @@ Planner::Planner(const Map& map) : map_(map) {
     write_only_[index(table)] = Intervals(std::move(write_only[index(table)]));
     unreadable_[index(table)] = Intervals(std::move(unreadable[index(table)]));
   }
-  const auto place = [&](std::uint32_t i) {
-    return std::tuple(map.points[i].table, read_range(map.points[i]).start(), i);
-  };
-  std::sort(order_.begin(), order_.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
+  sort_by_place(map, order_);
   std::map<double, std::vector<std::uint32_t>, std::greater<>> by_rate;
   for (const std::uint32_t i : order_) by_rate[rate_of(map, map.points[i])].push_back(i);
   for (auto& [rate, points] : by_rate) groups_.push_back({rate, std::move(points)});
 }
 
+std::vector<std::uint32_t> Planner::with_exponents(std::vector<std::uint32_t> points) const {
+  if (scaled_.empty()) return points;
+  std::vector<bool> is_in(map_.points.size());
+  for (const std::uint32_t point : points) is_in[point] = true;
+  const std::size_t given = points.size();
+  for (const auto& [point, exponent] : scaled_)
+    if (is_in[point] && !is_in[exponent]) {
+      points.push_back(exponent);
+      is_in[exponent] = true;
+    }
+  if (points.size() > given) sort_by_place(map_, points);
+  return points;
+}
+
+std::array<Intervals, tables.size()> Planner::together(Span<const std::uint32_t> points) const {
+  std::array<Intervals, tables.size()> result;
+  if (scaled_.empty()) return result;
+  std::vector<bool> is_in(map_.points.size());
+  for (const std::uint32_t point : points) is_in[point] = true;
+  std::array<std::vector<Range>, tables.size()> ranges;
+  for (const auto& [point, exponent] : scaled_) {
+    const Table table = map_.points[point].table;
+    const Range both = hull(read_range(map_.points[point]), read_range(map_.points[exponent]));
+    const bool is_one_table = table == map_.points[exponent].table;
+    if (is_in[point] && is_in[exponent] && is_one_table && both.count() <= limit_of(map_, table))
+      ranges[index(table)].push_back(both);
+  }
+  for (const Table table : tables) result[index(table)] = Intervals(std::move(ranges[index(table)]));
+  return result;
+}
+
 std::vector<ReadSpan> Planner::plan(Span<const std::uint32_t> points, Span<const Unreadable> refused) const {
+  const Wishes wishes{refused, together(points)};
   std::vector<ReadSpan> spans;
   const auto end_last = [&](Cut cut) {
     if (!spans.empty()) spans.back().end = cut;
@@ -88,7 +124,7 @@ std::vector<ReadSpan> Planner::plan(Span<const std::uint32_t> points, Span<const
     const Range range = read_range(point);
     if (!spans.empty() && spans.back().table == point.table) {
       ReadSpan& last = spans.back();
-      const auto apart = why_apart(last, range, refused);
+      const auto apart = why_apart(last, range, wishes);
       if (!apart) {
         last.range = hull(last.range, range);
         last.points.push_back(i);
@@ -96,11 +132,11 @@ std::vector<ReadSpan> Planner::plan(Span<const std::uint32_t> points, Span<const
       }
       last.end = {*apart, i, range.start() > last.range.end() ? range.start() - last.range.end() : 0};
     } else if (!spans.empty()) {
-      end_last(last_cut(spans.back(), refused));
+      end_last(last_cut(spans.back(), wishes));
     }
     spans.push_back({point.table, range, {i}});
   }
-  if (!spans.empty()) end_last(last_cut(spans.back(), refused));
+  if (!spans.empty()) end_last(last_cut(spans.back(), wishes));
   return spans;
 }
 
@@ -110,32 +146,31 @@ bool Planner::refuses(Table table, Range range, Span<const Unreadable> refused) 
   });
 }
 
-std::optional<Reason> Planner::why_apart(const ReadSpan& span, Range next,
-                                         Span<const Unreadable> refused) const {
+std::optional<Reason> Planner::why_apart(const ReadSpan& span, Range next, const Wishes& wishes) const {
   const Range both = hull(span.range, next);
   if (next.start() > span.range.end()) {
     const Range hole = Range::of(span.range.end(), next.start() - span.range.end());
-    if (const auto reason = why_not_across(span.table, hole)) return reason;
+    if (const auto reason = why_not_across(span.table, hole, wishes)) return reason;
   }
-  if (refuses(span.table, both, refused)) return Reason::unreadable;
+  if (refuses(span.table, both, wishes.refused)) return Reason::unreadable;
   if (both.count() > limit_of(map_, span.table)) return Reason::limit;
   return std::nullopt;
 }
 
-std::optional<Reason> Planner::why_not_across(Table table, Range hole) const {
+std::optional<Reason> Planner::why_not_across(Table table, Range hole, const Wishes& wishes) const {
   const std::size_t at = index(table);
   if (unreadable_[at].overlaps(hole)) return Reason::unreadable;
   if (!readable_[at].covers(hole)) {
     if (write_only_[at].overlaps(hole)) return Reason::write_only;
-    if (!is_continuous(map_, table)) return Reason::unmapped;
+    if (!is_continuous(map_, table) && !wishes.together[at].covers(hole)) return Reason::unmapped;
   }
-  if (hole.count() >= gap_of(map_, table)) return Reason::gap;
+  if (hole.count() >= gap_of(map_, table) && !wishes.together[at].covers(hole)) return Reason::gap;
   return std::nullopt;
 }
 
 /// The span is the last one wanted of its table. Would the next point have been joined if its rate were the
 /// same?
-Cut Planner::last_cut(const ReadSpan& span, Span<const Unreadable> refused) const {
+Cut Planner::last_cut(const ReadSpan& span, const Wishes& wishes) const {
   const auto next =
       std::lower_bound(order_.begin(), order_.end(), span, [&](std::uint32_t i, const ReadSpan& s) {
         const Point& point = map_.points[i];
@@ -144,14 +179,15 @@ Cut Planner::last_cut(const ReadSpan& span, Span<const Unreadable> refused) cons
   if (next == order_.end() || map_.points[*next].table != span.table) return {};
   const Range range = read_range(map_.points[*next]);
   const bool same_rate = rate_of(map_, map_.points[*next]) == rate_of(map_, map_.points[span.points.front()]);
-  if (same_rate || why_apart(span, range, refused)) return {};
+  if (same_rate || why_apart(span, range, wishes)) return {};
   return {Reason::other_rate, *next, static_cast<std::uint32_t>(range.start() - span.range.end())};
 }
 
 std::vector<GroupPlan> make_read_plan(const Map& map) {
   const Planner planner(map);
   std::vector<GroupPlan> plan;
-  for (const RateGroup& group : planner.groups()) plan.push_back({group.rate, planner.plan(group.points)});
+  for (const RateGroup& group : planner.groups())
+    plan.push_back({group.rate, planner.plan(planner.with_exponents(group.points))});
   return plan;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coupler/map/map.hpp"
+#include "coupler/map/published.hpp"
 #include "coupler/modbus/range.hpp"
 #include "coupler/plan/read_span.hpp"
 
@@ -49,8 +50,9 @@ std::optional<NotRead> why_not_read(const Map& map, const Point& point);
 /// Makes the read requests of a map, for all points or for some, few of them: points are joined while they
 /// touch or overlap, or, where unmapped addresses may be read, while fewer than the table's gap lie between
 /// them, and as long as the device's limit allows. Addresses of points that are read at another rate, or not
-/// wanted at the moment, do not count as unmapped. A point is never split. What Map::unreadable names, and
-/// points that can only be written, are not read even between others.
+/// wanted at the moment, do not count as unmapped. What lies between a point and the one that has the power
+/// of ten of its scale may be read, too, if both are among the points. A point is never split. What
+/// Map::unreadable names, and points that can only be written, are not read even between others.
 class Planner {
  public:
   /// The storage of `map` must outlive the planner.
@@ -58,6 +60,10 @@ class Planner {
 
   /// Every point that can be read, the fastest rate first.
   const std::vector<RateGroup>& groups() const { return groups_; }
+
+  /// Adds the points that have the power of ten of the scales of `points`, so that they are read together.
+  /// Both are in the order of a RateGroup.
+  std::vector<std::uint32_t> with_exponents(std::vector<std::uint32_t> points) const;
 
   /// The requests for `points`, given in the order of a RateGroup; ordered by table and address. Points are
   /// not joined to a request that contains one of `refused`.
@@ -70,13 +76,19 @@ class Planner {
 
  private:
   bool refuses(Table table, modbus::Range range, Span<const Unreadable> refused) const;
-  std::optional<Cut::Reason> why_apart(const ReadSpan& span, modbus::Range next,
-                                       Span<const Unreadable> refused) const;
-  std::optional<Cut::Reason> why_not_across(Table table, modbus::Range hole) const;
-  Cut last_cut(const ReadSpan& span, Span<const Unreadable> refused) const;
+  /// What the requests of a plan must respect, besides the map.
+  struct Wishes {
+    Span<const Unreadable> refused;
+    std::array<Intervals, tables.size()> together;  ///< from a point to the one that has its power of ten
+  };
+  std::array<Intervals, tables.size()> together(Span<const std::uint32_t> points) const;
+  std::optional<Cut::Reason> why_apart(const ReadSpan& span, modbus::Range next, const Wishes& wishes) const;
+  std::optional<Cut::Reason> why_not_across(Table table, modbus::Range hole, const Wishes& wishes) const;
+  Cut last_cut(const ReadSpan& span, const Wishes& wishes) const;
 
   Map map_;
   std::vector<RateGroup> groups_;
+  std::vector<ScaledPoint> scaled_;   ///< by point
   std::vector<std::uint32_t> order_;  ///< every point that can be read, by table and address
   std::array<Intervals, tables.size()> readable_;
   std::array<Intervals, tables.size()> write_only_;

@@ -46,9 +46,9 @@ std::string head_line(const Head& head, Moment at) {
 }
 
 std::string value_line(Moment at, std::string_view point, std::string_view value, Nanoseconds uncertainty,
-                       Span<const std::uint16_t> registers) {
-  std::string rest = fmt::format("\"point\":\"{}\",\"value\":{},\"quality\":\"good\",\"u\":{:.6f}", point,
-                                 value, seconds(uncertainty));
+                       Span<const std::uint16_t> registers, std::string_view quality) {
+  std::string rest = fmt::format("\"point\":\"{}\",\"value\":{},\"quality\":\"{}\",\"u\":{:.6f}", point,
+                                 value, quality, seconds(uncertainty));
   if (!registers.empty()) rest += fmt::format(",\"registers\":[{}]", fmt::join(registers, ","));
   return line(at, rest);
 }

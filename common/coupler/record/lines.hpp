@@ -41,7 +41,7 @@ struct Head {
 std::string head_line(const Head& head, Moment at);
 /// `value`: JSON. `registers`: as they stand on the wire, for what JSON cannot say; empty: bits.
 std::string value_line(Moment at, std::string_view point, std::string_view value, Nanoseconds uncertainty,
-                       Span<const std::uint16_t> registers);
+                       Span<const std::uint16_t> registers, std::string_view quality = "good");
 /// The device answers with an exception.
 std::string no_value_line(Moment at, std::string_view point, std::string_view quality, unsigned exception);
 /// `is_node`: of this project; nullopt: it was not asked.

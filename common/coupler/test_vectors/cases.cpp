@@ -278,6 +278,7 @@ Cases cases_of(const Point& point) {
   std::vector<Case> cases;
   const auto add = [&](Case&& made) {
     const auto same = [&](const Case& other) { return other.raw == made.raw; };
+    if (is_invalid(point, made.raw.data())) return;
     if (std::none_of(cases.begin(), cases.end(), same)) cases.push_back(std::move(made));
   };
   if (point.count > 1 && point.format.type == codec::Type::BOOL)

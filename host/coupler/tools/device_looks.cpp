@@ -20,6 +20,11 @@ std::string refusal_text(const host::PointQuality& quality, bool is_node) {
          (is_right ? ": this client has no right to read it" : "");
 }
 
+State state_of(const host::ValueTable::Value& value) {
+  if (value.has_value()) return State::good;
+  return value.read_as == host::PointQuality::State::fault ? State::fault : State::invalid;
+}
+
 }  // namespace
 
 DeviceLooks::DeviceLooks(const Map& map, const std::vector<bool>& chosen, const host::ValueTable& values,
@@ -118,12 +123,14 @@ Reading DeviceLooks::read(std::uint32_t point, const std::optional<host::Error>&
   }
   host::ValueTable::Value value = values_.get(point, clock_.now());
   const host::PointQuality& quality = value.quality;
-  if (quality.is_refused() || !quality.why.empty()) {
+  const bool is_set_aside = !quality.why.empty() && quality.why != value.why_unusable;
+  if (quality.is_refused() || is_set_aside) {
     reading.why = refusal_text(quality, is_node());
     if (quality.why.empty()) reading.exception = quality.last_exception;
   } else if (error ? is_from_this_look(value) && !told_[point] : is_from_this_look(value) || told_[point]) {
-    reading.state = State::good;
-    reading.registers = std::move(value.registers);
+    reading.state = state_of(value);
+    reading.why = value.why_unusable;
+    if (value.has_value()) reading.registers = std::move(value.registers);
   } else {
     reading.why = error ? to_string(*error) : "not asked yet";
   }

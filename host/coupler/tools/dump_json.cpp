@@ -25,6 +25,8 @@ ordered_json reading_json(const Map& map, const Reading& reading) {
                     {"units", point.units},
                     {"changed", reading.changed},
                     {"failed", reading.state == Reading::State::failed},
+                    {"invalid", reading.state == Reading::State::invalid},
+                    {"fault", reading.state == Reading::State::fault},
                     {"why", nullptr},
                     {"exception", nullptr},
                     {"type", codec::to_string(point.format.type)},

@@ -28,6 +28,9 @@ FieldMap::FieldMap(const Map& node)
     point.access = is_free_input(point, node) ? Access::read_write : Access::read;
     point.table = seen_from_field(point.table);
     point.bounds = {};
+    point.invalid = {};
+    point.faults = {};
+    point.scale.exponent_of = {};
     point.host = {};
   }
   std::sort(points_.begin(), points_.end(), canonical_less);

@@ -126,6 +126,7 @@ using PointsByName = std::unordered_map<std::string_view, const Point*>;
 void add_rest(const Point& older, const Point& newer, std::vector<Change>& changes) {
   add_details(older, newer, older.name, changes);
   add_fields(older.bounds, newer.bounds, older.name, changes);
+  add_fields(older.faults, newer.faults, older.name, changes);
   add_fields(older.host, newer.host, older.name, changes);
 }
 

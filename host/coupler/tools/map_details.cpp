@@ -63,6 +63,14 @@ std::string text_of(Span<const NamedValue> values) {
   return text;
 }
 
+std::string text_of(Span<const RawRange> ranges) {
+  std::string text;
+  for (const auto& [first, last] : ranges)
+    text += fmt::format("{}0x{:X}{}", text.empty() ? "" : ", ", first,
+                        first == last ? "" : fmt::format(" to 0x{:X}", last));
+  return text;
+}
+
 std::string unreadable_text(const Map& map) {
   std::string text;
   for (const Unreadable& area : map.unreadable)
@@ -122,6 +130,7 @@ std::vector<Detail> details_of(const Point& point) {
       {"pwm-changed", compatible, text_of(point.pwm)},
       {"read-address-changed", compatible, point.read_address ? fmt::to_string(*point.read_address) : ""},
       {"values-changed", meaning, text_of(point.values)},
+      {"invalid-changed", meaning, text_of(point.invalid)},
       {"deadman-changed", compatible, deadman_text(point.host)},
   };
 }

@@ -16,6 +16,8 @@ namespace coupler::tools {
 struct Reading {
   enum class State : std::uint8_t {
     good,
+    fault,     ///< was read, and says that something is broken
+    invalid,   ///< was read, and is no value
     failed,    ///< was to be read
     not_asked  ///< the map says that it cannot be read
   };

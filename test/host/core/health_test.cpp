@@ -97,5 +97,11 @@ TEST_F(HealthTest, A_certificate_that_ends_soon_is_a_warning_and_one_that_has_en
               testing::Not(HasSubstr("the device's")));
 }
 
+TEST_F(HealthTest, Values_that_are_none_are_a_warning_because_the_device_answers) {
+  const Health health = polling({State::invalid, State::invalid, State::never_read});
+  EXPECT_EQ(health.level, Level::warning);
+  EXPECT_EQ(health.text, "no value of a (invalid), b (invalid)");
+}
+
 }  // namespace
 }  // namespace coupler::host

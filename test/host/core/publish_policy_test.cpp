@@ -118,5 +118,21 @@ TEST_F(PublishPolicyTest, Renewed_the_same_value_is_news_once) {
   EXPECT_FALSE(calls_news({7}));
 }
 
+TEST_F(PublishPolicyTest, Another_power_of_ten_makes_another_value) {
+  point.scale.exponent_of = "sf";
+  EXPECT_TRUE(calls_news({5, 0}));
+  EXPECT_FALSE(calls_news({5, 0}));
+  EXPECT_TRUE(calls_news({5, 1}));
+}
+
+TEST_F(PublishPolicyTest, A_deadband_is_of_the_value_with_its_power_of_ten) {
+  point.scale.exponent_of = "sf";
+  point.host.deadband = 10;
+  EXPECT_TRUE(calls_news({500, 0}));
+  EXPECT_FALSE(calls_news({51, 1})) << "500 and 510";
+  EXPECT_TRUE(calls_news({5, 3}));
+  EXPECT_TRUE(calls_news({5, static_cast<std::uint16_t>(-2)}));
+}
+
 }  // namespace
 }  // namespace coupler::host

@@ -37,6 +37,10 @@ class RecordingSink : public Sink {
   Topic& add_topic(std::string_view point);
 
   void on_values(Span<const std::uint32_t> points) override;
+  std::map<std::string, int> no_values;  ///< how often a point was said to have none
+  void on_no_values(Span<const std::uint32_t> points, Time) override {
+    for (const std::uint32_t point : points) ++no_values[std::string(map_.points[point].name)];
+  }
   Time repeat_at(std::uint32_t point) const override;
   void on_online(bool now) override { online.push_back(now); }
   std::vector<ScheduledOutcome> outcomes;

@@ -81,7 +81,11 @@ class LiveValuesTest : public testing::Test {
   }
   void read(const ReadSpan& span, const std::vector<std::uint16_t>& values, Time at) {
     table_->store(span, values, {at, {}}, at);
-    values_->on_values(span.points);
+    for (const std::uint32_t point : span.points)
+      if (!table_->is_usable(point))
+        values_->on_no_values({&point, 1}, at);
+      else
+        values_->on_values({&point, 1});
   }
   /// The point is read, and the answer is an exception.
   void refuse(const std::string& name, modbus::Exception code) {

@@ -257,5 +257,23 @@ TEST_F(LiveValuesTest, The_end_ends_every_wait) {
   EXPECT_EQ(ended, 1);
 }
 
+TEST_F(LiveValuesTest, A_value_that_is_none_is_shown_as_invalid_with_the_reason) {
+  static constexpr RawRange none[] = {{0x8000, 0x8000}};
+  show(MapBuilder().add(Table::holding_registers, "a", 0, Type::INT,
+                        [](Point& point) { point.invalid = none; }));
+  values_->on_online(true);
+  table_->online(true);
+  read_registers({"a"}, 0, {7});
+  read_registers({"a"}, 0, {0x8000}, milliseconds(1));
+  const ordered_json a = news()["points"]["a"];
+  EXPECT_EQ(a["quality"], "invalid");
+  EXPECT_EQ(a["why"], "the device gives 0x8000, which the map calls invalid");
+  EXPECT_FALSE(a.contains("value"));
+  EXPECT_FALSE(a.contains("text"));
+  read_registers({"a"}, 0, {7}, milliseconds(2));
+  EXPECT_EQ(news()["points"]["a"]["value"], 7);
+  EXPECT_EQ(quality("a"), "good");
+}
+
 }  // namespace
 }  // namespace coupler::host

@@ -29,8 +29,8 @@ std::string csv_value(Type type, const std::vector<std::uint16_t>& registers, st
                                 point.format.length = static_cast<std::uint16_t>(2 * registers.size());
                               })
                          .build();
-  const std::string row =
-      csv_format()->value(some_moment(), map->map().points[0], registers, microseconds(250));
+  const std::string row = csv_format()->value(some_moment(), map->map().points[0], registers,
+                                              microseconds(250), PointQuality::State::good);
   const std::string front = csv_when + "level,";
   EXPECT_EQ(row.substr(0, front.size()), front);
   return row.substr(front.size());
@@ -66,7 +66,7 @@ TEST(CsvFormat, A_value_is_a_row) {
 TEST(CsvFormat, A_bit_is_true_or_false) {
   const MapPtr map = MapBuilder().coil("lamp", 0).build();
   const std::uint16_t on = 1;
-  EXPECT_EQ(csv_format()->value(some_moment(), map->map().points[0], {&on, 1}, {}),
+  EXPECT_EQ(csv_format()->value(some_moment(), map->map().points[0], {&on, 1}, {}, PointQuality::State::good),
             csv_when + "lamp,true,good,0.000000\n");
 }
 

@@ -66,12 +66,14 @@ TEST(JsonFormat, A_value_has_its_registers_and_a_bit_has_none) {
   const std::uint16_t on = 1;
   const std::uint16_t level = 0xFFFB;
   const auto format = json_format();
-  EXPECT_EQ(format->value(some_moment(), *find(map->map(), "lamp"), {&on, 1}, std::chrono::milliseconds(1)),
+  EXPECT_EQ(format->value(some_moment(), *find(map->map(), "lamp"), {&on, 1}, std::chrono::milliseconds(1),
+                          PointQuality::State::good),
             json_when + R"("point":"lamp","value":true,"quality":"good","u":0.001000})"
                         "\n");
-  EXPECT_EQ(format->value(some_moment(), *find(map->map(), "level"), {&level, 1}, {}),
-            json_when + R"("point":"level","value":-5,"quality":"good","u":0.000000,"registers":[65531]})"
-                        "\n");
+  EXPECT_EQ(
+      format->value(some_moment(), *find(map->map(), "level"), {&level, 1}, {}, PointQuality::State::good),
+      json_when + R"("point":"level","value":-5,"quality":"good","u":0.000000,"registers":[65531]})"
+                  "\n");
 }
 
 TEST(JsonFormat, A_text_of_the_device_that_is_not_UTF_8_is_in_the_registers) {
@@ -80,7 +82,8 @@ TEST(JsonFormat, A_text_of_the_device_that_is_not_UTF_8_is_in_the_registers) {
                               [](Point& point) { point.format.length = 2; })
                          .build();
   const std::uint16_t registers = 0x41FF;
-  EXPECT_EQ(json_format()->value(some_moment(), map->map().points[0], {&registers, 1}, {}),
+  EXPECT_EQ(json_format()->value(some_moment(), map->map().points[0], {&registers, 1}, {},
+                                 PointQuality::State::good),
             json_when +
                 "\"point\":\"text\",\"value\":\"A\xEF\xBF\xBD\",\"quality\":\"good\",\"u\":0.000000,"
                 "\"registers\":[16895]}\n");

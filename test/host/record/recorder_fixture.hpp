@@ -27,7 +27,10 @@ class ShortFormat : public RecordFormat {
     return "head of " + head.name + '\n';
   }
   std::string value(record::Moment at, const Point& point, Span<const std::uint16_t> registers,
-                    record::Nanoseconds uncertainty) const override {
+                    record::Nanoseconds uncertainty, PointQuality::State quality) const override {
+    if (quality != PointQuality::State::good)
+      return fmt::format("{}: {} {} {}\n", in_ms(at.since_start), point.name, to_string(quality),
+                         registers[0]);
     return fmt::format("{}: {} {}={}±{}\n", in_ms(at.since_start), holds_bits(point.table) ? "bit" : "word",
                        point.name, fmt::join(registers, ","), in_ms(uncertainty));
   }
@@ -112,7 +115,11 @@ class RecorderTest : public testing::Test {
   }
   void read(const ReadSpan& span, const Words& words, Stamp stamp) {
     values_->store(span, words, stamp, stamp.at);
-    recorder_->on_values(span.points);
+    for (const std::uint32_t point : span.points)
+      if (!values_->is_usable(point))
+        recorder_->on_no_values({&point, 1}, stamp.at);
+      else
+        recorder_->on_values({&point, 1});
   }
   /// The point is read, and the answer is an exception.
   void refuse(const std::string& name, modbus::Exception code,

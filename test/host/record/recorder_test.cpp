@@ -262,5 +262,53 @@ TEST_F(RecorderTest, Counts_say_how_many_points_have_a_value) {
   EXPECT_TRUE(recorder_->counts().was_online);
 }
 
+constexpr RawRange none[] = {{0x8000, 0x8000}};
+
+TEST_F(RecorderTest, A_value_that_is_none_is_a_line_when_it_comes_and_when_it_goes) {
+  record(MapBuilder().add(Table::holding_registers, "a", 0, Type::INT,
+                          [](Point& point) { point.invalid = none; }));
+  read_registers({"a"}, 0, {0x8000}, milliseconds(100));
+  read_registers({"a"}, 0, {0x8000}, milliseconds(200));
+  come_online();
+  read_registers({"a"}, 0, {5}, milliseconds(300));
+  read_registers({"a"}, 0, {0x8000}, milliseconds(400));
+  read_registers({"a"}, 0, {5}, milliseconds(500));
+  EXPECT_THAT(taken(), ElementsAre("100: a invalid 32768", "online", "300: word a=5±0",
+                                   "400: a invalid 32768", "500: word a=5±0"));
+}
+
+TEST_F(RecorderTest, A_file_begins_with_a_value_that_is_none) {
+  record(MapBuilder().add(Table::holding_registers, "a", 0, Type::INT,
+                          [](Point& point) { point.invalid = none; }));
+  come_online();
+  read_registers({"a"}, 0, {0x8000});
+  EXPECT_THAT(lines_of(recorder_->all_values(start_)), ElementsAre("online", "1000: a invalid 32768"));
+  EXPECT_EQ(recorder_->counts().good, 0U);
+}
+
+TEST_F(RecorderTest, After_an_interruption_a_value_that_is_none_is_recorded_when_it_is_read) {
+  record(MapBuilder().add(Table::holding_registers, "a", 0, Type::INT,
+                          [](Point& point) { point.invalid = none; }));
+  come_online();
+  read_registers({"a"}, 0, {0x8000}, milliseconds(100));
+  go_offline();
+  come_online();
+  read_registers({"a"}, 0, {0x8000}, milliseconds(900));
+  EXPECT_THAT(taken(), ElementsAre("online", "100: a invalid 32768", "online", "900: a invalid 32768"));
+}
+
+TEST_F(RecorderTest, An_exception_after_no_value_is_recorded_and_the_value_before_an_interruption_is_not) {
+  record(MapBuilder().add(Table::holding_registers, "a", 0, Type::INT,
+                          [](Point& point) { point.invalid = none; }));
+  come_online();
+  read_registers({"a"}, 0, {0x8000}, milliseconds(100));
+  refuse("a", Exception::server_device_busy, milliseconds(200));
+  go_offline();
+  come_online();
+  refuse("a", Exception::server_device_busy, milliseconds(300));
+  EXPECT_THAT(taken(), ElementsAre("online", "100: a invalid 32768", "200: a exception 6", "online",
+                                   "300: a exception 6"));
+}
+
 }  // namespace
 }  // namespace coupler::host

@@ -15,7 +15,7 @@ class Input(Point, Generic[T]):
     """A point that can be read."""
 
     def read(self) -> T:
-        """Asks the device for the value."""
+        """Asks the device for the value. Raises NoValue if what it gives is none."""
         return self._client._read_point(self.spec)
 
 
@@ -81,13 +81,14 @@ class Client:
             self._drop()
 
     def read_all(self) -> dict[str, Any]:
-        """The values of all points that can be read, by their names in the map."""
-        values: dict[str, Any] = {}
+        """The values of all points that can be read, by their names in the map; None where the device has none."""
+        words: dict[str, list[int]] = {}
         with self._lock:
             self._connected()
             for table, address, count, names in self._plan:
-                values.update(self._read_together(table, address, count, names))
-        return values
+                words.update(self._read_together(table, address, count, names))
+            specs = [self._points[name].spec for name in words]
+            return {spec.name: spec.decode(words[spec.name], self._power_of(spec, words)) for spec in specs}
 
     def __enter__(self: Any) -> Any:
         self.connect()
@@ -106,12 +107,29 @@ class Client:
     def _read_point(self, spec: Spec) -> Any:
         with self._lock:
             self._connected()
-            try:
-                return spec.decode(self._read(spec.table, spec.read_from, spec.count * spec.size))
-            except ExceptionReply as error:
-                raise ExceptionReply(error.code, f"{spec.name}: ") from None
+            words = self._read_words(spec)
+            value = spec.decode(words, self._power_of(spec, {}))
+        if value is None:
+            raise NoValue(f"{spec.name} has no value: the device says so")
+        return value
 
-    def _read_together(self, table: str, first: int, count: int, names: tuple[str, ...]) -> dict[str, Any]:
+    def _read_words(self, spec: Spec) -> list[int]:
+        try:
+            return self._read(spec.table, spec.read_from, spec.count * spec.size)
+        except ExceptionReply as error:
+            raise ExceptionReply(error.code, f"{spec.name}: ") from None
+
+    def _power_of(self, spec: Spec, known: dict[str, list[int]]) -> int | None:
+        """The power of ten of the scale; None if the device has none. `known`: registers that were read already."""
+        if not spec.exponent_of:
+            return 0
+        exponent = self._points[spec.exponent_of].spec
+        power = exponent.decode(known.get(exponent.name) or self._read_words(exponent))
+        return power if power is not None and abs(power) <= _MOST_EXPONENT else None
+
+    def _read_together(self, table: str, first: int, count: int, names: tuple[str, ...]) -> dict[str, list[int]]:
+        """The registers or bits of each point."""
+        specs = [self._points[name].spec for name in names]
         if names not in self._one_by_one:
             try:
                 words = self._read(table, first, count)
@@ -120,12 +138,8 @@ class Client:
                     raise ExceptionReply(error.code, f"{', '.join(names)}: ") from None
                 self._one_by_one.add(names)
             else:
-                values = {}
-                for spec in (self._points[name].spec for name in names):
-                    at = spec.read_from - first
-                    values[spec.name] = spec.decode(words[at:at + spec.count * spec.size])
-                return values
-        return {name: self._read_point(self._points[name].spec) for name in names}
+                return {spec.name: words[spec.read_from - first:][:spec.count * spec.size] for spec in specs}
+        return {spec.name: self._read_words(spec) for spec in specs}
 
     def _write_point(self, spec: Spec, words: list[int]) -> None:
         with self._lock:

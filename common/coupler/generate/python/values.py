@@ -55,6 +55,7 @@ _LETTERS = {  # of struct; CHAR is its code
     "BYTE": "B", "WORD": "H", "DWORD": "I", "LWORD": "Q", "SINT": "b", "INT": "h", "DINT": "i", "LINT": "q",
     "USINT": "B", "UINT": "H", "UDINT": "I", "ULINT": "Q", "REAL": "f", "LREAL": "d", "CHAR": "B"}
 _BITS_ONLY = ("BYTE", "WORD", "DWORD", "LWORD", "CHAR")  # which bounds do not concern
+_MOST_EXPONENT = 30  # of a scale
 _MOST = {"f": struct.unpack(">f", b"\x7f\x7f\xff\xff")[0], "d": struct.unpack(">d", b"\x7f\xef" + 6 * b"\xff")[0]}
 
 
@@ -87,6 +88,10 @@ class ExceptionReply(CouplerError):
 
 class NotTaken(CouplerError):
     """The device acknowledged a write, but something else reads back."""
+
+
+class NoValue(CouplerError):
+    """The device gives what the map calls invalid or a fault, or no power of ten for the scale."""
 
 
 class Refused(CouplerError, ValueError):
@@ -139,6 +144,10 @@ class Spec:
     encoding: str = ""
     gain: float = 1.0
     offset: float = 0.0
+    exponent_of: str = ""              # the point with the power of ten by which the gain is multiplied
+    invalid: tuple[tuple[int, int], ...] = ()  # raw values that are none: first, last
+    fault_below: float = -math.inf     # raw values beyond are faults
+    fault_above: float = math.inf
     units: str = ""
     least: float = -math.inf           # `min` and `max` of the map, as the registers hold them
     most: float = math.inf
@@ -152,11 +161,14 @@ class Spec:
 
     @property
     def scaled(self) -> bool:
-        return self.gain != 1 or self.offset != 0
+        return self.gain != 1 or self.offset != 0 or self.exponent_of != ""
 
-    def decode(self, words: list[int]) -> Any:
-        """The value in `count * size` registers or bits."""
-        values = [self._decode_one(words[at:at + self.size]) for at in range(0, self.count * self.size, self.size)]
+    def decode(self, words: list[int], power: int | None = 0) -> Any:
+        """The value in `count * size` registers or bits; None if there is none. `power`: of ten, of the scale."""
+        parts = [words[at:at + self.size] for at in range(0, self.count * self.size, self.size)]
+        if power is None or any(self._is_invalid(part) or self._is_fault(part) for part in parts):
+            return None
+        values = [self._decode_one(part, power) for part in parts]
         return values if self.count > 1 else values[0]
 
     def encode(self, value: Any) -> list[int]:
@@ -174,7 +186,22 @@ class Spec:
     def refuse(self, why: str) -> NoReturn:
         raise Refused(f"{self.name}: refused: {why}")
 
-    def _decode_one(self, words: list[int]) -> Any:
+    def _is_invalid(self, words: list[int]) -> bool:
+        if not self.invalid:
+            return False
+        data = _bytes(words, self.order)
+        if self.mask in (0xFF00, 0x00FF) and self.type != "BOOL":
+            data = bytes([words[0] >> 8 if self.mask == 0xFF00 else words[0] & 0xFF])
+        raw = int.from_bytes(data, "big")  # of a BOOL that of its register
+        return any(first <= raw <= last for first, last in self.invalid)
+
+    def _is_fault(self, words: list[int]) -> bool:
+        if math.isinf(self.fault_below) and math.isinf(self.fault_above):
+            return False
+        raw = self._raw(words)
+        return raw < self.fault_below or raw > self.fault_above
+
+    def _decode_one(self, words: list[int], power: int) -> Any:
         if self.type == "BOOL":
             return words[0] & self.mask != 0
         if self.type == "STRING":
@@ -183,7 +210,8 @@ class Spec:
             return text.replace("\ufffd", "?") if self.encoding == "ascii" else text
         raw = self._raw(words)
         if self.scaled:
-            return float(raw) * self.gain + self.offset
+            gain = self.gain * 10.0 ** power if power >= 0 else self.gain / 10.0 ** -power
+            return float(raw) * gain + self.offset
         return raw if self._name_of(raw) is None else self._name_of(raw)
 
     def _name_of(self, raw: int) -> Any:
@@ -286,6 +314,8 @@ class Spec:
 
     def _check_allowed(self, words: list[int]) -> None:
         """As what the registers would hold, so that 21.7 is not above `max: 21.7` of a REAL."""
+        if self._is_invalid(words):
+            self.refuse(f"{self._raw(words)} is what the device gives for no value; send {self.allowed}")
         if self.type in _BITS_ONLY:
             return
         raw = self._raw(words)

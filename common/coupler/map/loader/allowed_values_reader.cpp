@@ -77,6 +77,16 @@ struct Seen {
   std::unordered_set<std::string_view> names;
 };
 
+std::string_view words_of(Forbidden why) {
+  if (why == Forbidden::invalid) return "'invalid', so it cannot be written";
+  return why == Forbidden::below_min ? "below 'min'" : "above 'max'";
+}
+
+/// An input may have a name for what its device gives for no value.
+bool is_forbidden_name(Forbidden why, const Point& point) {
+  return why != Forbidden::invalid || is_writable(point);
+}
+
 /// One entry of `values`; false if it is wrong.
 bool read_name(const Entry& entry, const Point& point, std::vector<NamedValue>& names, Seen& seen,
                const Context& context) {
@@ -101,10 +111,8 @@ bool read_name(const Entry& entry, const Point& point, std::vector<NamedValue>& 
   if (!is_new_value || !is_new_name)
     return wrong(entry.key_at, fmt::format("'values' has '{}' twice", is_new_value ? entry.text : entry.key),
                  "keep one of the two");
-  if (const auto why = why_forbidden(point, registers.data()))
-    return wrong(entry.key_at,
-                 fmt::format("'values' names {}, which is {}", *value,
-                             *why == Forbidden::below_min ? "below 'min'" : "above 'max'"),
+  if (const auto why = why_forbidden(point, registers.data()); why && is_forbidden_name(*why, point))
+    return wrong(entry.key_at, fmt::format("'values' names {}, which is {}", *value, words_of(*why)),
                  "change one of the two");
   names.push_back({*value, context.map.keep(entry.text)});
   return true;
@@ -141,7 +149,7 @@ void check_duty_cycle(std::string_view key, Span<const std::uint16_t> registers,
 }  // namespace
 
 void read_allowed_values(const Reader& reader, Point& point, const Context& context) {
-  if (!check_type(reader, point, context)) return;
+  if (!check_type(reader, point, context) || point.scale.has_exponent()) return;
   const std::size_t errors = context.problems.errors();
   Bounds bounds;
   reader.fields(bounds);
@@ -160,11 +168,14 @@ void check_start(const Reader& reader, const Point& point, const Context& contex
   if (!is_writable(point) || !is_analogue(point)) return;
   constexpr std::array<std::uint16_t, 4> zero{};
   const auto check = [&](std::string_view key, bool given, std::string_view when) {
-    if (given || !find_forbidden(point, zero.data())) return;
+    const auto forbidden = find_forbidden(point, zero.data());
+    if (given || !forbidden) return;
     const Entry* channel = reader.find(point.iio.present() ? "iio" : "pwm");
     context.problems.error(channel->key_at,
                            fmt::format("{} is set to 0 {}, which {} do not allow", shown(point.name), when,
-                                       point.values.empty() ? "'min' and 'max'" : "its 'values'"),
+                                       forbidden->why == Forbidden::invalid ? "'invalid'"
+                                       : point.values.empty()               ? "'min' and 'max'"
+                                                                            : "its 'values'"),
                            fmt::format("add '{}' with a value that they allow", key));
   };
   check("initial", !point.initial.empty(), "at the start");

@@ -203,6 +203,11 @@ constexpr Key keys[] = {
         .otherwise("false"),
     project("values", registers, K::names, "{0: idle, 1: running}",
             "what the values of an integer are called"),
+    project("invalid", registers, K::raw_values, "0x8000", "raw values that the device gives for no value"),
+    project("fault_below", registers, K::number, "3600",
+            "a smaller raw value means that something is broken"),
+    project("fault_above", registers, K::number, "21000",
+            "a greater raw value means that something is broken"),
     project("iio", registers, K::section, "{device: adc0, channel: voltage0}", "an analogue channel")
         .holds(S::iio),
     project("pwm", S::holding_register, K::section, "{chip: pwmchip0, channel: 0, period: 1ms}",
@@ -265,6 +270,11 @@ constexpr Key keys[] = {
     // `scale:`, `iio:`, `pwm:`, `deadman:`
     project("gain", S::scale, K::number, "0.1", "raw is multiplied by it").otherwise("1"),
     project("offset", S::scale, K::number, "-40", "and this is added").otherwise("0"),
+    project("raw", S::scale, K::ends, "[4000, 20000]", "two raw values, in place of gain and offset")
+        .needed_with("value"),
+    project("value", S::scale, K::ends, "[0, 10]", "what they are published as").needed_with("raw"),
+    project("exponent_of", S::scale, K::text, "power_sf",
+            "a point whose value is a power of ten of the gain"),
     project("device", S::iio, K::text, "adc0", "name or label of the device, or iio:device0").needed(),
     project("channel", S::iio, K::text, "voltage0", "the channel's id").needed(),
     project("chip", S::pwm, K::text, "pwmchip0", "the PWM chip").needed(),

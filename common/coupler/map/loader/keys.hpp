@@ -62,18 +62,20 @@ enum class ValueKind : std::uint8_t {
   host,        ///< text without blanks
   ip_address,  ///< of the node
   choice,
-  type,      ///< one of the choices, or another name of it (coupler/codec/type_name.hpp)
-  preset,    ///< the name of one
-  duration,  ///< with a unit
-  seconds,   ///< a duration; a bare number means seconds
-  address,   ///< as Addressing says
-  value,     ///< of the point's type
-  list,      ///< of texts
-  section,   ///< only what Key::inside says
-  names,     ///< integer -> identifier
-  points,    ///< name -> point: a map as Key::inside says; for bits just an address is good
-  roles,     ///< name -> role: a map as Key::inside says
-  patterns,  ///< all, none, or a list of names of points, with '*' and '?'
+  type,        ///< one of the choices, or another name of it (coupler/codec/type_name.hpp)
+  preset,      ///< the name of one
+  duration,    ///< with a unit
+  seconds,     ///< a duration; a bare number means seconds
+  address,     ///< as Addressing says
+  value,       ///< of the point's type
+  list,        ///< of texts
+  section,     ///< only what Key::inside says
+  ends,        ///< a list of two different numbers
+  raw_values,  ///< bits of the point's type: numbers, and lists of two numbers that are a range
+  names,       ///< integer -> identifier
+  points,      ///< name -> point: a map as Key::inside says; for bits just an address is good
+  roles,       ///< name -> role: a map as Key::inside says
+  patterns,    ///< all, none, or a list of names of points, with '*' and '?'
 };
 
 /// A bare number of seconds above it is refused: somebody meant milliseconds.

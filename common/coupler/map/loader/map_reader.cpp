@@ -165,6 +165,7 @@ std::optional<MapLayout> read_map(const Entry& file, const MapSource& source, Pl
   read_coupler_watchdog(top, preset, points, defaults.addressing, head, context);
   const std::vector<SimWire> sim = read_sim(top, points, context);
   check_edges(points, sim, context);
+  check_exponents(points, context);
   check_unreadable(unreadable, points, head.limits, context);
   check_broadcast(top, points, head, context);
   check_reserved(reserved, points, context);

@@ -190,6 +190,8 @@ void read_rest(const PointDefaults& defaults, DraftPoint& draft, const Context& 
   Point& point = draft.point;
   if (draft.placed && !holds_bits(point.table)) {
     read_scale(options, point, context);
+    read_invalid(options, point, context);
+    read_faults(options, point, context);
     read_allowed_values(options, point, context);
   }
   if (const Entry* initial = options.find("initial"); draft.placed && initial != nullptr)

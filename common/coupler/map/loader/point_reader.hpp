@@ -51,8 +51,17 @@ void read_format(const Reader& reader, const Entry& point, codec::Order order, c
 /// `type:`, by any of its names; must be given.
 void read_type(const Reader& reader, codec::Type& type, const Context& context);
 
-/// `scale:`, a number or a map of gain and offset.
+/// `scale:`, a number or a map of gain, offset and the point that has its power of ten.
 void read_scale(const Reader& reader, Point& point, const Context& context);
+
+/// `invalid:`, the raw values of a point of registers that mean that it has no value.
+void read_invalid(const Reader& reader, Point& point, const Context& context);
+
+/// `fault_below:` and `fault_above:`.
+void read_faults(const Reader& reader, Point& point, const Context& context);
+
+/// The points that `exponent_of` names must be whole numbers without a scale that are read.
+void check_exponents(const DraftPoints& points, const Context& context);
 
 /// `min:`, `max:`, `allow_nonfinite:` and `values:`. The point's format and scale must be known.
 void read_allowed_values(const Reader& reader, Point& point, const Context& context);

@@ -200,6 +200,40 @@ class ValueWriter {
   const Context& context_;
 };
 
+/// nullopt if the key is not there, or wrong.
+std::optional<std::pair<double, double>> ends(const Reader& scale, std::string_view key) {
+  const Entry* entry = scale.find(key);
+  if (entry == nullptr) return std::nullopt;
+  std::optional<double> first;
+  std::optional<double> last;
+  if (entry->kind == Entry::Kind::list && entry->children.size() == 2) {
+    first = bare_number(entry->children[0]);
+    last = bare_number(entry->children[1]);
+  }
+  if (first && last && *first != *last) return std::pair(*first, *last);
+  scale.wrong(key, "a list of two different numbers");
+  return std::nullopt;
+}
+
+/// `raw` and `value`: two points of a line, in place of gain and offset.
+void read_ends(const Reader& reader, codec::Scale& scale) {
+  for (const auto& [key, other] : {std::pair("raw", "value"), std::pair("value", "raw")}) {
+    if (!reader.has(key)) continue;
+    if (!reader.has(other))
+      return reader.refuse(key, fmt::format("'scale' has '{}' and no '{}'", key, other),
+                           "write both, as in 'scale: {raw: [4000, 20000], value: [0, 10]}'");
+    for (const char* factor : {"gain", "offset"})
+      if (reader.has(factor))
+        return reader.refuse(factor, fmt::format("'raw' and 'value' say what '{}' says", factor),
+                             "remove the one or the other");
+  }
+  const auto raw = ends(reader, "raw");
+  const auto value = ends(reader, "value");
+  if (!raw || !value) return;
+  scale.gain = (value->second - value->first) / (raw->second - raw->first);
+  scale.offset = value->first - raw->first * scale.gain;
+}
+
 }  // namespace
 
 void read_format(const Reader& reader, const Entry& point, Order order, Format& format,
@@ -235,6 +269,9 @@ void read_scale(const Reader& reader, Point& point, const Context& context) {
   if (entry->kind == Entry::Kind::map) {
     const Reader inside(*entry, Section::scale, context);
     inside.fields(scale);
+    read_ends(inside, scale);
+    if (inside.has("exponent_of") && !scale.has_exponent())
+      inside.wrong("exponent_of", "the name of a point");
     if (scale.gain == 0) inside.wrong("gain", "a number other than 0");
   } else if (const auto gain = bare_number(*entry)) {
     scale.gain = *gain;
@@ -242,7 +279,14 @@ void read_scale(const Reader& reader, Point& point, const Context& context) {
   } else {
     reader.wrong("scale", scale_value);
   }
-  if (scale.gain != 0) point.scale = scale;
+  if (scale.gain == 0) return;
+  point.scale = scale;
+  if (!scale.has_exponent()) return;
+  for (const std::string_view key : {"initial", "min", "max"})
+    if (reader.has(key))
+      reader.refuse(key,
+                    fmt::format("'{}' does not go with 'exponent_of': only the device knows the scale", key),
+                    "remove it");
 }
 
 Span<const std::uint16_t> read_value(std::string_view key, const Entry& entry, const Point& point,
@@ -260,7 +304,9 @@ Span<const std::uint16_t> read_value(std::string_view key, const Entry& entry, c
   }
   for (std::size_t i = 0; i < point.count; ++i)
     if (!writer.write(list ? entry.children[i] : entry, &registers[i * step])) return {};
-  if (const auto forbidden = find_forbidden(point, registers.data())) {
+  const auto forbidden = find_forbidden(point, registers.data());
+  const bool is_no_value_yet = forbidden && forbidden->why == Forbidden::invalid && !is_writable(point);
+  if (forbidden && !is_no_value_yet) {
     context.problems.error(entry.at, fmt::format("'{}': {}", key, forbidden_text(point, *forbidden)),
                            "write " + allowed_text(point));
     return {};

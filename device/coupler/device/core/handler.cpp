@@ -47,9 +47,9 @@ Handler::Handler(const Map& map, Hardware hardware, const NodeState& state, cons
       schedule_(state.schedule),
       clock_(clock),
       shows_identity_(hardware.shows_identity()),
-      limits_values_(
+      forbids_values_(
           std::any_of(map.points.begin(), map.points.end(),
-                      [](const Point& point) { return is_writable(point) && limits_values(point); })),
+                      [](const Point& point) { return is_writable(point) && forbids_values(point); })),
       has_pulses_(std::any_of(map.points.begin(), map.points.end(), is_pulsed)) {
   set_machine({});
   show_outputs();

@@ -182,7 +182,7 @@ class Handler {
   OutputSchedule& schedule_;
   const Clock* clock_;
   bool shows_identity_;
-  bool limits_values_;                                        ///< the map does, of a point that is written
+  bool forbids_values_;                                       ///< the map does, of a point that is written
   bool has_pulses_;                                           ///< the map has
   bool wrote_output_ = false;                                 ///< the request that is being answered has
   std::array<std::uint16_t, modbus::max_write_bits> next_{};  ///< what a write stores, before it is committed

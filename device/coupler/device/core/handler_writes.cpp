@@ -90,10 +90,10 @@ Span<std::uint16_t> Handler::writable_registers(modbus::Range range) const {
 }
 
 bool Handler::is_forbidden(Table table, modbus::Range written) const {
-  if (!limits_values_ || table != Table::holding_registers) return false;
+  if (!forbids_values_ || table != Table::holding_registers) return false;
   const auto points = touched_points(map_, table, written);
   return std::any_of(points.begin(), points.end(), [&](const Point& point) {
-    return is_writable(point) && limits_values(point) && is_forbidden(point, written);
+    return is_writable(point) && forbids_values(point) && is_forbidden(point, written);
   });
 }
 

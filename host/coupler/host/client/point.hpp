@@ -31,13 +31,14 @@ class Input : public PointHandle {
 
   /// The last value, without waiting for the network.
   tl::expected<Reading<T>, NoValue> get() const { return typed(sample()); }
-  /// The same, after waiting for the first value since connect().
+  /// The same, after waiting until the point has been read since connect().
   tl::expected<Reading<T>, NoValue> wait(std::chrono::milliseconds at_most) const {
     return typed(first_sample(at_most));
   }
-  /// Calls `use(value)` with the first value and with each that differs from the one before; set it before
-  /// connect() to miss none. It takes the place of the one before, and an empty one ends the calls. While one
-  /// is being called by another thread, this waits for its end: hold no lock that it takes.
+  /// Calls `use(value)` with the first value, with each that differs from the one before, and when there is
+  /// one again after there was none; set it before connect() to miss none. It takes the place of the one
+  /// before, and an empty one ends the calls. While one is being called by another thread, this waits for its
+  /// end: hold no lock that it takes.
   void on_change(std::function<void(const T&)> use) {
     if (!use) return listen({});
     on_stamped_change([use = std::move(use)](const T& value, host::Stamp) { use(value); });

@@ -119,6 +119,7 @@ struct Session::Engine {
 
 std::string to_string(const NoValue& why) {
   if (why.quality == Quality::never_read) return "was not read yet";
+  if (!why.why_unusable.empty()) return "has no value: " + why.why_unusable;
   if (why.quality == Quality::offline) return "was not read yet: the device does not answer";
   return fmt::format("cannot be read: {}",
                      why.exception ? host::to_string(host::Error(host::ExceptionReply{*why.exception}))
@@ -172,7 +173,8 @@ tl::expected<Session::Sample, NoValue> Session::sample(std::uint32_t point) cons
   const host::Time now = std::chrono::steady_clock::now();
   host::ValueTable::Value value = values_.get(point, now);
   const host::PointQuality& quality = value.quality;
-  if (value.registers.empty()) return tl::unexpected(NoValue{quality.state, quality.last_exception});
+  if (!value.has_value())
+    return tl::unexpected(NoValue{quality.state, quality.last_exception, value.why_unusable});
   // If a node tells changes, a value is known to be true for longer than since its last change.
   const bool was_true_then =
       (quality.state == Quality::good || quality.state == Quality::offline) && quality.last_good;

@@ -42,8 +42,9 @@ struct Options {
 
 /// Why there is no value.
 struct NoValue {
-  Quality quality = Quality::never_read;         ///< never_read, offline, rejected, or exception
+  Quality quality = Quality::never_read;         ///< any but good
   std::optional<modbus::Exception> exception{};  ///< the last one
+  std::string why_unusable{};  ///< why what was read last is no value; empty if nothing was read
 };
 std::string to_string(const NoValue& why);
 

@@ -44,17 +44,19 @@ Health polling_health(const Map& map, const std::vector<PointQuality>& points, c
                       const DeviceSnapshot& now) {
   if (!now.online) return {Level::warning, "nothing is read: the device is offline"};
   std::size_t good = 0;
+  std::size_t unusable = 0;
   std::size_t missing = 0;
   std::string names;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points[i].state == State::good) ++good;
+    if (PointQuality::is_unusable(points[i].state)) ++unusable;
     if (!is_missing(map.points[i], points[i].state)) continue;
     if (++missing <= names_at_most)
       names +=
           fmt::format("{}{} ({})", missing > 1 ? ", " : "", map.points[i].name, to_string(points[i].state));
   }
   if (missing > names_at_most) names += fmt::format(" and {} more", missing - names_at_most);
-  if (missing > 0) return {good == 0 ? Level::error : Level::warning, "no value of " + names};
+  if (missing > 0) return {good + unusable == 0 ? Level::error : Level::warning, "no value of " + names};
   if (now.overruns > before.overruns)
     return {Level::warning, fmt::format("{} cycles left out; lower the rate, or see below what takes so long",
                                         now.overruns - before.overruns)};

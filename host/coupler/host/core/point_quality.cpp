@@ -14,6 +14,8 @@ std::string_view to_string(State state) {
     case State::rejected: return "rejected";
     case State::offline: return "offline";
     case State::not_wanted: return "not wanted";
+    case State::invalid: return "invalid";
+    case State::fault: return "fault";
   }
   return "?";
 }

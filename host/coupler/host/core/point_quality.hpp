@@ -21,16 +21,20 @@ struct PointQuality {
     exception,   ///< the last read was answered with an exception
     rejected,    ///< the device does not have it, or it is set aside
     offline,     ///< the device does not answer
-    not_wanted   ///< not read, because nobody listens to it
+    not_wanted,  ///< not read, because nobody listens to it
+    invalid,     ///< what was read is no value: see Point::invalid, and the power of ten of a scale
+    fault        ///< what was read says that something is broken: see Point::faults
   };
   State state = State::never_read;
   Time stale_from = Time::max();    ///< the time at which a good value becomes stale if nothing new comes
   std::optional<Time> last_good{};  ///< the time of the last value
   std::optional<modbus::Exception> last_exception{};  ///< the last exception, however long ago
-  std::string why{};  ///< what came instead of a reply; empty if there was a reply
+  std::string why{};  ///< what came instead of a reply, or why what came is no value; empty otherwise
   std::optional<WriteResult::Outcome> last_write{};  ///< that of the last write that was not superseded
   std::string last_write_text{};                     ///< to_string() of its result
 
+  /// Returns whether what was read is not published: it is no value, or a fault.
+  static bool is_unusable(State state) { return state == State::invalid || state == State::fault; }
   /// Returns whether the device did not give the value when it was last asked, though it is online.
   bool is_refused() const { return is_refused(state); }
   static bool is_refused(State state) { return state == State::exception || state == State::rejected; }

@@ -279,6 +279,9 @@ void PollCycle::replan(Group& group, Time now) {
   std::vector<std::uint32_t> points;
   for (const std::uint32_t point : group.points->points)
     if (is_read(point) && !at_rest_[point]) points.push_back(point);
+  points = planner_.with_exponents(std::move(points));
+  points.erase(std::remove_if(points.begin(), points.end(), [this](std::uint32_t i) { return given_up_[i]; }),
+               points.end());
   const std::vector<Step> old = std::exchange(group.steps, {});
   for (ReadSpan& span : planner_.plan(points, rejected_ranges_)) {
     const auto same = std::find_if(old.begin(), old.end(), [&](const Step& step) {

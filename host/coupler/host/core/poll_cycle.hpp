@@ -52,7 +52,8 @@ class PollCycle {
   /// their addresses either.
   void leave_out(std::vector<std::uint32_t> points) { left_out_ = std::move(points); }
   /// Sets whether somebody wants the values of a point (index into Map::points). From the next cycle of its
-  /// rate on only the requests are sent that the wanted points need.
+  /// rate on only the requests are sent that the wanted points need, also for the power of ten of their
+  /// scale.
   void want(std::uint32_t point, bool wanted);
   /// Stops reading a point from the next cycle of its rate on.
   void rest(std::uint32_t point, bool at_rest);

@@ -82,8 +82,22 @@ void Poller::publish(const ReadSpan& span) {
   const ReadSpan& fresh = hides ? without_hidden(span) : span;
   values_.store(fresh, read, told_.read(fresh, read, link_.last_stamp()), link_.last_answer());
   if (hides) values_.good(span.points, link_.last_answer());
-  sink_.on_values(fresh.points);
+  if (values_.can_be_unusable())
+    tell_apart(fresh.points);
+  else
+    sink_.on_values(fresh.points);
   writer_.shown(fresh.points);
+}
+
+/// Tells the sink which of the points that were read have a value to be used.
+void Poller::tell_apart(Span<const std::uint32_t> points) {
+  usable_.clear();
+  unusable_.clear();
+  for (const Span<const std::uint32_t> read : {points, values_.late()})
+    for (const std::uint32_t point : read)
+      if (!values_.waits(point)) (values_.is_usable(point) ? usable_ : unusable_).push_back(point);
+  sink_.on_values(usable_);
+  if (!unusable_.empty()) sink_.on_no_values(unusable_, link_.last_answer());
 }
 
 const ReadSpan& Poller::without_hidden(const ReadSpan& span) {

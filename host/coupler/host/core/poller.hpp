@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "coupler/host/core/bit_changes.hpp"
 #include "coupler/host/core/device_statistics.hpp"
@@ -61,6 +62,7 @@ class Poller {
 
  private:
   void publish(const ReadSpan& span);
+  void tell_apart(Span<const std::uint32_t> points);
   const ReadSpan& without_hidden(const ReadSpan& span);
   void on_exception(modbus::Exception code);
   bool ask_in_parts(modbus::Exception code);
@@ -82,6 +84,8 @@ class Poller {
   bool has_ended_cycle_ = false;
   bool is_node_ = false;  ///< a node knows every function, so exception 01 is about rights
   ReadSpan rest_{Table::coils, modbus::Range::of(0, 1), {}};  ///< a member, so that its memory is used again
+  std::vector<std::uint32_t> usable_;                         ///< of the last reply
+  std::vector<std::uint32_t> unusable_;                       ///< of the last reply
   std::array<std::uint16_t, modbus::max_read_bits> read_{};   ///< the registers or bits of the last reply
 };
 

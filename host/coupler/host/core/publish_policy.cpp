@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "coupler/codec/value.hpp"
+#include "coupler/map/published.hpp"
 
 namespace coupler::host {
 namespace {
@@ -29,7 +30,7 @@ bool is_number(codec::Type type) { return type != codec::Type::BOOL && type != c
 }  // namespace
 
 PublishPolicy::PublishPolicy(const Point& point)
-    : point_(point), last_(point.host.publish == Publish::on_change ? range(point).count() : 0) {}
+    : point_(point), last_(point.host.publish == Publish::on_change ? host_registers(point) : 0) {}
 
 Time PublishPolicy::repeat_at() const {
   const HostOptions& host = point_.host;
@@ -50,14 +51,18 @@ bool PublishPolicy::calls_news(const std::uint16_t* registers, Time at) {
 bool PublishPolicy::differs(const std::uint16_t* registers) const {
   const auto mask = holds_bits(point_.table) ? std::uint16_t{1} : codec::mask(point_.format);
   const auto same = [mask](std::uint16_t a, std::uint16_t b) { return ((a ^ b) & mask) == 0; };
-  if (std::equal(last_.begin(), last_.end(), registers, same)) return false;
+  const double gain_before = scale_of(last_.data(), point_).gain;
+  const double gain = scale_of(registers, point_).gain;
+  const std::size_t own = range(point_).count();
+  if (gain == gain_before && std::equal(last_.data(), last_.data() + own, registers, same)) return false;
   if (point_.host.deadband <= 0 || !is_number(point_.format.type)) return true;
   const std::size_t width = codec::registers(point_.format);
-  for (std::size_t at = 0; at + width <= last_.size(); at += width) {
+  for (std::size_t at = 0; at < own; at += width) {
     const double before = number(&last_[at], point_.format);
     const double now = number(registers + at, point_.format);
     if (std::isnan(before) != std::isnan(now)) return true;
-    if (std::fabs((now - before) * point_.scale.gain) > point_.host.deadband) return true;
+    const double change = gain == gain_before ? (now - before) * gain : now * gain - before * gain_before;
+    if (std::fabs(change) > point_.host.deadband) return true;
   }
   return false;
 }

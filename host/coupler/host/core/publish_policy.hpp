@@ -18,7 +18,7 @@ class PublishPolicy {
   /// The point must outlive the policy.
   explicit PublishPolicy(const Point& point);
 
-  /// `registers` has the point's registers, or its bits as 0 or 1, as they were at the time `at`.
+  /// `registers` has the point's host_registers(), or its bits as 0 or 1, as they were at the time `at`.
   bool calls_news(const std::uint16_t* registers, Time at);
 
   /// The time at which the last published value is published again; Time::max(): never.

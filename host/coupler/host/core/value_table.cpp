@@ -2,16 +2,37 @@
 #include "coupler/host/core/value_table.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <tuple>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "coupler/codec/number.hpp"
 #include "coupler/host/core/poll_deadlines.hpp"
+#include "coupler/host/core/value_text.hpp"
+#include "coupler/map/allowed_values.hpp"
+#include "coupler/map/published.hpp"
 #include "coupler/plan/planner.hpp"
 
 namespace coupler::host {
 
 using State = PointQuality::State;
 
-ValueTable::ValueTable(const Map& map) : entries_(map.points.size()) {
+namespace {
+
+/// Returns the power of ten that the point's registers have; nullopt if it is out of range.
+std::optional<std::int16_t> exponent_in(const std::uint16_t* registers, const Point& point) {
+  return codec::with_number(point.format.type, [&](auto zero) -> std::optional<std::int16_t> {
+    const auto number = static_cast<double>(codec::take<decltype(zero)>(point.format, registers));
+    if (std::fabs(number) > most_exponent) return std::nullopt;
+    return static_cast<std::int16_t>(number);
+  });
+}
+
+}  // namespace
+
+ValueTable::ValueTable(const Map& map) : map_(map), entries_(map.points.size()) {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const Point& point = map.points[i];
     const modbus::Range range = read_range(point);
@@ -21,8 +42,17 @@ ValueTable::ValueTable(const Map& map) : entries_(map.points.size()) {
     entry.start = range.start();
     entry.mask = own_bits(point);
     entry.stale_after = 2 * period_of(plan::rate_of(map, point)) + map.connection.timeout;
-    registers_.resize(registers_.size() + range.count());
+    registers_.resize(registers_.size() + host_registers(point));
+    can_be_unusable_ |= !point.invalid.empty() || point.faults.present() || point.scale.has_exponent();
   }
+  const auto place_of = [&](const Point& point) {
+    return std::tuple(point.table, read_range(point).start());
+  };
+  for (const auto& [i, exponent] : points_with_exponent(map)) {
+    entries_[i].scaling = static_cast<std::uint32_t>(scaling_.size());
+    scaling_.push_back({i, exponent, place_of(map.points[i]) < place_of(map.points[exponent])});
+  }
+  late_.reserve(scaling_.size());
 }
 
 void ValueTable::begin() {
@@ -43,25 +73,104 @@ void ValueTable::begin() {
 void ValueTable::store(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp, Time good_at) {
   const std::lock_guard lock(mutex_);
   bool news = false;
+  ++stores_;
   for (const std::uint32_t point : span.points) {
     Entry& entry = entries_[point];
-    news |= state_of(entry, good_at) != State::good;
-    keep(entry, &registers[entry.start - std::size_t{span.range.start()}]);
-    entry.stamp = stamp;
-    mark_good(entry, good_at);
+    entry.stored = stores_;
+    const std::uint16_t* const read = &registers[entry.start - std::size_t{span.range.start()}];
+    if (entry.scaling) continue;
+    news |= take(entry, {read, stamp, good_at});
   }
+  if (!scaling_.empty()) news |= store_scaled(span, registers, stamp, good_at);
   if (news) ++revision_;
   notify();
 }
 
-void ValueTable::keep(Entry& entry, const std::uint16_t* registers) {
-  std::uint16_t* const own = &registers_[entry.first];
+/// Stores the points of the span whose scale has a power of ten, and those from before that have waited for
+/// one of the span.
+bool ValueTable::store_scaled(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp,
+                              Time good_at) {
+  bool news = false;
+  late_.clear();
+  for (const std::uint32_t point : span.points) {
+    Entry& entry = entries_[point];
+    if (!entry.scaling) continue;
+    Scaling& scaling = scaling_[*entry.scaling];
+    const std::uint16_t* const read = &registers[entry.start - std::size_t{span.range.start()}];
+    const Entry& exponent = entries_[scaling.exponent];
+    set_waits(scaling, scaling.comes_later && exponent.stored != stores_ && is_expected(exponent));
+    if (scaling.waits) {
+      std::copy_n(read, entry.count, scaling.registers.begin());
+      scaling.stamp = stamp;
+      scaling.good_at = good_at;
+    } else {
+      news |= take(entry, {read, stamp, good_at});
+    }
+  }
+  if (waiting_ == 0) return news;
+  for (Scaling& scaling : scaling_) {
+    if (!scaling.waits || entries_[scaling.exponent].stored != stores_) continue;
+    set_waits(scaling, false);
+    news |= take(entries_[scaling.point], {scaling.registers.data(), scaling.stamp, scaling.good_at});
+    late_.push_back(scaling.point);
+  }
+  return news;
+}
+
+/// Returns whether the state of the point has changed.
+bool ValueTable::take(Entry& entry, const Taken& taken) {
+  const Point& point = map_.points[static_cast<std::size_t>(&entry - entries_.data())];
+  const State before = state_of(entry, taken.good_at);
+  const bool was_usable = entry.read_as == State::good;
   entry.differs = entry.number == 0;
-  for (std::size_t i = 0; i < entry.count; ++i) {
-    const auto now = static_cast<std::uint16_t>(registers[i] & entry.mask);
-    entry.differs |= std::exchange(own[i], now) != now;
+  for (std::size_t i = 0; i < entry.count; ++i)
+    keep(entry, i, static_cast<std::uint16_t>(taken.registers[i] & entry.mask));
+  entry.read_as = is_invalid(point, taken.registers) ? State::invalid
+                  : is_fault(point, taken.registers) ? State::fault
+                                                     : State::good;
+  entry.lacks_exponent = false;
+  if (entry.scaling && entry.read_as == State::good) {
+    const auto power = exponent_of(scaling_[*entry.scaling], taken.good_at);
+    entry.lacks_exponent = !power;
+    if (power)
+      keep(entry, entry.count, static_cast<std::uint16_t>(*power));
+    else
+      entry.read_as = State::invalid;
   }
   if (entry.differs) ++entry.number;
+  const bool has_another_reason = entry.differs && entry.read_as != State::good;
+  entry.differs |= entry.read_as == State::good && !was_usable;
+  entry.stamp = taken.stamp;
+  mark_good(entry, taken.good_at);
+  return has_another_reason || state_of(entry, taken.good_at) != before;
+}
+
+void ValueTable::keep(Entry& entry, std::size_t i, std::uint16_t now) {
+  const std::uint16_t before = std::exchange(registers_[entry.first + i], now);
+  entry.differs |= before != now;
+}
+
+/// Returns whether the device is likely to answer the request for the point in this cycle.
+bool ValueTable::is_expected(const Entry& entry) {
+  return !entry.rejected && !entry.failing && entry.why.empty();
+}
+
+void ValueTable::set_waits(Scaling& scaling, bool waits) {
+  if (std::exchange(scaling.waits, waits) != waits) waiting_ += waits ? 1 : std::size_t(-1);
+}
+
+/// Drops what waits for one of the points, or belongs to one of them: they have not been read in this cycle.
+void ValueTable::stop_waiting(Span<const std::uint32_t> points) {
+  if (waiting_ == 0) return;
+  for (Scaling& scaling : scaling_)
+    for (const std::uint32_t point : points)
+      if (point == scaling.point || point == scaling.exponent) set_waits(scaling, false);
+}
+
+std::optional<std::int16_t> ValueTable::exponent_of(const Scaling& scaling, Time now) const {
+  const Entry& exponent = entries_[scaling.exponent];
+  if (read_state(exponent, now) != State::good) return std::nullopt;
+  return exponent_in(&registers_[exponent.first], map_.points[scaling.exponent]);
 }
 
 void ValueTable::mark_good(Entry& entry, Time at) {
@@ -76,10 +185,11 @@ void ValueTable::good(Span<const std::uint32_t> points, Time at) {
   bool news = false;
   for (const std::uint32_t point : points) {
     Entry& entry = entries_[point];
-    news |= state_of(entry, at) != State::good;
+    const State before = state_of(entry, at);
     const bool is_earlier = entry.number > 0 && !entry.last_good;
     mark_good(entry, at);
     if (is_earlier) entry.last_good.reset();
+    news |= state_of(entry, at) != before;
   }
   if (news) ++revision_;
 }
@@ -91,6 +201,7 @@ void ValueTable::exception(Span<const std::uint32_t> points, modbus::Exception c
     entries_[point].failing = true;
     entries_[point].why.clear();
   }
+  stop_waiting(points);
   ++revision_;
 }
 
@@ -112,6 +223,7 @@ void ValueTable::rejected(Span<const std::uint32_t> points, modbus::Exception co
 void ValueTable::set_aside(Span<const std::uint32_t> points, const std::string& why) {
   const std::lock_guard lock(mutex_);
   for (const std::uint32_t point : points) entries_[point].why = why;
+  stop_waiting(points);
   ++revision_;
 }
 
@@ -131,6 +243,7 @@ void ValueTable::heard(Time at) {
 void ValueTable::connected() {
   const std::lock_guard lock(mutex_);
   for (Entry& entry : entries_) entry.failing = entry.rejected = false;
+  for (Scaling& scaling : scaling_) set_waits(scaling, false);
   ++revision_;
 }
 
@@ -167,23 +280,45 @@ void ValueTable::end_waits() {
 }
 
 State ValueTable::state_of(const Entry& entry, Time now) const {
-  if (!online_) return State::offline;
+  return online_ ? read_state(entry, now) : State::offline;
+}
+
+/// Returns the state of the point while the device is online. Values are stored before the device counts as
+/// online.
+State ValueTable::read_state(const Entry& entry, Time now) const {
   if (entry.rejected || !entry.why.empty()) return State::rejected;
   if (entry.failing) return State::exception;
   if (!entry.last_good) return entry.number > 0 ? State::stale : State::never_read;
-  if (entry.told) return State::good;
-  return now - *entry.last_good > entry.stale_after ? State::stale : State::good;
+  if (!entry.told && now - *entry.last_good > entry.stale_after) return State::stale;
+  return entry.read_as;
 }
 
 PointQuality ValueTable::quality_of(const Entry& entry, Time now) const {
   const State state = state_of(entry, now);
-  const bool becomes_stale = state == State::good && !entry.told;
+  const bool becomes_stale = (state == State::good || PointQuality::is_unusable(state)) && !entry.told;
   const Time stale_from = becomes_stale ? *entry.last_good + entry.stale_after : Time::max();
   const bool was_true_then =
       entry.told && entry.last_good && (state == State::good || state == State::offline);
   const auto last_good = was_true_then ? std::max(*entry.last_good, heard_) : entry.last_good;
-  return {
-      state, stale_from, last_good, entry.last_exception, entry.why, entry.last_write, entry.last_write_text};
+  return {state,
+          stale_from,
+          last_good,
+          entry.last_exception,
+          PointQuality::is_unusable(state) ? why_unusable(entry, now) : entry.why,
+          entry.last_write,
+          entry.last_write_text};
+}
+
+std::string ValueTable::why_unusable(const Entry& entry, Time now) const {
+  const Point& point = map_.points[static_cast<std::size_t>(&entry - entries_.data())];
+  if (entry.read_as == State::good) return {};
+  if (!entry.lacks_exponent) return unusable_text(&registers_[entry.first], point);
+  const std::uint32_t power = scaling_[*entry.scaling].exponent;
+  const Entry& exponent = entries_[power];
+  if (read_state(exponent, now) == State::good)
+    return fmt::format("{} is {}, which cannot be a power of ten", point.scale.exponent_of,
+                       format_value(&registers_[exponent.first], map_.points[power]));
+  return fmt::format("{}, the power of ten of its scale, has no value", point.scale.exponent_of);
 }
 
 std::vector<PointQuality> ValueTable::qualities(Time now) const {
@@ -199,13 +334,22 @@ PointQuality ValueTable::quality(std::uint32_t point, Time now) const {
   return quality_of(entries_[point], now);
 }
 
+PointQuality::State ValueTable::state_when_online(std::uint32_t point, Time now) const {
+  const std::lock_guard lock(mutex_);
+  return read_state(entries_[point], now);
+}
+
 ValueTable::Value ValueTable::get(std::uint32_t point, Time now) const {
   const std::lock_guard lock(mutex_);
   const Entry& entry = entries_[point];
   const auto first = registers_.begin() + static_cast<std::ptrdiff_t>(entry.first);
-  const std::size_t count = entry.number > 0 ? entry.count : 0;
-  return {
-      {first, first + static_cast<std::ptrdiff_t>(count)}, entry.stamp, entry.number, quality_of(entry, now)};
+  const std::size_t count = entry.number > 0 ? host_registers(map_.points[point]) : 0;
+  return {{first, first + static_cast<std::ptrdiff_t>(count)},
+          entry.stamp,
+          entry.number,
+          quality_of(entry, now),
+          entry.read_as,
+          why_unusable(entry, now)};
 }
 
 }  // namespace coupler::host

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include "coupler/host/core/point_quality.hpp"
 #include "coupler/host/core/stamp.hpp"
 #include "coupler/map/map.hpp"
+#include "coupler/map/published.hpp"
 #include "coupler/plan/read_span.hpp"
 
 namespace coupler::host {
@@ -29,12 +31,17 @@ class ValueTable {
   /// A copy of what is known of a point.
   struct Value {
     std::vector<std::uint16_t>
-        registers;  ///< as TypedValue encodes them, bits as 0 or 1; empty: no value yet
+        registers;  ///< host_registers() of them, bits as 0 or 1; empty: nothing was read yet
     Stamp stamp;
-    std::uint64_t number = 0;  ///< how often the value has changed, counting the first value
+    std::uint64_t number = 0;  ///< how often the registers have changed, counting the first time
     PointQuality quality;
+    PointQuality::State read_as = PointQuality::State::good;  ///< see last_read()
+    std::string why_unusable;  ///< why what was read last is not to be used; empty: it is
+
+    bool has_value() const { return number > 0 && why_unusable.empty(); }
   };
 
+  /// The storage of `map` must outlive the table.
   explicit ValueTable(const Map& map);
 
   /// Prepares the table for another Device. Values from before are stale until they are read again. A
@@ -46,6 +53,13 @@ class ValueTable {
   /// Stores the values of the points of `span`, which were good at the time `good_at`. `registers[i]` is the
   /// register `span.range.start() + i`, or that bit as 0 or 1.
   void store(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp, Time good_at);
+  /// Returns whether the registers of the point that were read last are not stored yet, because they wait for
+  /// the power of ten of their scale, which another request of the same cycle reads.
+  bool waits(std::uint32_t point) const {
+    return entries_[point].scaling && scaling_[*entries_[point].scaling].waits;
+  }
+  /// The points that waited until the last store().
+  Span<const std::uint32_t> late() const { return late_; }
   /// Notes that the points can be read. Their values are not stored, because a write will replace them.
   void good(Span<const std::uint32_t> points, Time at);
   void exception(Span<const std::uint32_t> points, modbus::Exception code);
@@ -58,13 +72,18 @@ class ValueTable {
   void told(std::uint32_t point, bool told);
   /// Notes that the last values of told points were still true at the time `at`.
   void heard(Time at);
-  /// Forgets what the device rejected over an earlier connection.
+  /// Forgets what the device rejected over an earlier connection, and what waits().
   void connected();
   void online(bool online);
 
   // The device's thread may call these functions in Sink::on_values().
 
-  /// The registers of a point that has a value: as many as `range(point).count()`.
+  /// Returns whether the map says of any point when what is read is not to be used.
+  bool can_be_unusable() const { return can_be_unusable_; }
+  /// Returns good, or, if what was read last is not to be used, invalid or fault.
+  PointQuality::State last_read(std::uint32_t point) const { return entries_[point].read_as; }
+  bool is_usable(std::uint32_t point) const { return last_read(point) == PointQuality::State::good; }
+  /// The host_registers() of a point that was read.
   const std::uint16_t* registers(std::uint32_t point) const { return &registers_[entries_[point].first]; }
   Stamp stamp(std::uint32_t point) const { return entries_[point].stamp; }
   std::uint64_t number(std::uint32_t point) const { return entries_[point].number; }
@@ -76,7 +95,7 @@ class ValueTable {
   void wrote(std::uint32_t point, const WriteResult& result);
   Value get(std::uint32_t point, Time now) const;
   enum class Offline { waits, gives_up };
-  /// Waits until the point has a value that came after begin() and was true at the time `since` or later.
+  /// Waits until the point was read after begin(), and what was read was true at the time `since` or later.
   /// Returns false if it has none at `deadline`, after end_waits(), or, with Offline::gives_up, while the
   /// device is offline.
   bool wait(std::uint32_t point, Time since, Time deadline, Offline offline) const;
@@ -85,6 +104,8 @@ class ValueTable {
   /// Returns the quality of each point at the time `now`. Points that can only be written stay never_read.
   std::vector<PointQuality> qualities(Time now) const;
   PointQuality quality(std::uint32_t point, Time now) const;
+  /// The state that the point has while the device is online.
+  PointQuality::State state_when_online(std::uint32_t point, Time now) const;
   /// A number that changes with each state, exception and write in qualities(), but neither by the mere
   /// passing of time nor with a value.
   std::uint64_t revision() const { return revision_; }
@@ -92,11 +113,15 @@ class ValueTable {
  private:
   struct Entry {
     std::size_t first = 0;     ///< the index of its first register in registers_
-    std::uint16_t count = 0;   ///< the number of its registers or bits
+    std::uint16_t count = 0;   ///< the number of its registers or bits, without the power of ten
     std::uint32_t start = 0;   ///< the address from which the first one is read
     std::uint16_t mask = 0;    ///< the bits of each register that belong to the point
     std::uint64_t number = 0;  ///< see Value::number; 0 if the point has no value
     bool differs = false;
+    PointQuality::State read_as = PointQuality::State::good;  ///< see last_read()
+    bool lacks_exponent = false;                              ///< then it is invalid for that
+    std::uint64_t stored = 0;                                 ///< the number of the last store() of its span
+    std::optional<std::uint32_t> scaling{};  ///< the index in scaling_, if its scale has a power of ten
     Stamp stamp{};
     Duration stale_after{};  ///< an older value is stale
     std::optional<Time> last_good{};
@@ -108,16 +133,47 @@ class ValueTable {
     bool rejected = false;
     bool told = false;
   };
-  void keep(Entry& entry, const std::uint16_t* registers);
+  /// A point whose scale has a power of ten. If that is read later in the cycle, by another request, the
+  /// registers of the point wait for it here.
+  struct Scaling {
+    std::uint32_t point;
+    std::uint32_t exponent;  ///< the point that has the power of ten
+    bool comes_later;        ///< it stands behind the point
+    bool waits = false;
+    std::array<std::uint16_t, 4> registers{};  ///< no number has more
+    Stamp stamp{};
+    Time good_at{};
+  };
+  struct Taken {
+    const std::uint16_t* registers;  ///< as they were read
+    Stamp stamp;
+    Time good_at;
+  };
+  bool store_scaled(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp, Time good_at);
+  bool take(Entry& entry, const Taken& taken);
+  void keep(Entry& entry, std::size_t i, std::uint16_t now);
+  static bool is_expected(const Entry& entry);
+  void set_waits(Scaling& scaling, bool waits);
+  void stop_waiting(Span<const std::uint32_t> points);
+  std::optional<std::int16_t> exponent_of(const Scaling& scaling, Time now) const;
   static void mark_good(Entry& entry, Time at);
   bool is_since(const Entry& entry, Time since) const;
   void notify();
   PointQuality quality_of(const Entry& entry, Time now) const;
   PointQuality::State state_of(const Entry& entry, Time now) const;
+  PointQuality::State read_state(const Entry& entry, Time now) const;
+  std::string why_unusable(const Entry& entry, Time now) const;
+
+  const Map map_;
+  bool can_be_unusable_ = false;
+  std::vector<std::uint32_t> late_;
 
   mutable std::mutex mutex_;
   std::vector<Entry> entries_;            ///< by point
   std::vector<std::uint16_t> registers_;  ///< of all points
+  std::vector<Scaling> scaling_;
+  std::uint64_t stores_ = 0;
+  std::size_t waiting_ = 0;  ///< the number of elements of scaling_ that wait
   bool online_ = false;
   Time heard_ = Time::min();
   std::atomic<std::uint64_t> revision_{0};

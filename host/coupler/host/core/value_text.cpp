@@ -15,6 +15,7 @@
 #include "coupler/codec/scale.hpp"
 #include "coupler/codec/value.hpp"
 #include "coupler/map/printable.hpp"
+#include "coupler/map/published.hpp"
 #include "coupler/map/typed_value.hpp"
 
 namespace coupler::host {
@@ -104,13 +105,16 @@ std::vector<std::string_view> elements(std::string_view text) {
 
 /// 217 x 0.1 is 21.7 to a person, not 21.700000000000003: the last digits only where they tell values apart.
 std::string scaled_text(const std::uint16_t* registers, const Point& point) {
-  const double value = codec::published(registers, point.format, point.scale);
+  const codec::Scale scale = scale_of(registers, point);
+  const double value = codec::published(registers, point.format, scale);
   const std::string text = fmt::format("{:.15g}", value);
   std::array<std::uint16_t, 4> again{};  // no type with a scale is longer
   const std::size_t count = codec::registers(point.format);
   std::copy_n(registers, count, again.begin());
-  const bool same = encode_scaled(std::strtod(text.c_str(), nullptr), point, again.data()).empty() &&
-                    std::equal(registers, registers + count, again.begin());
+  const double shown = std::strtod(text.c_str(), nullptr);
+  const bool same =
+      codec::encode_published(shown, point.format, scale, again.data()) == codec::ScaleError::none &&
+      std::equal(registers, registers + count, again.begin());
   return same ? text : fmt::format("{}", value);
 }
 
@@ -141,6 +145,25 @@ std::string format_value(const std::uint16_t* registers, const Point& point) {
   for (std::size_t i = 0; i < point.count; ++i, registers += codec::registers(point.format))
     list += (i > 0 ? ", " : "") + one(registers);
   return "[" + list + "]";
+}
+
+std::string unusable_text(const std::uint16_t* registers, const Point& point) {
+  if (point.format.type == Type::BOOL) return "the device gives a register that the map calls invalid";
+  const std::size_t width = codec::registers(point.format);
+  for (std::size_t i = 0; i < point.count; ++i, registers += width) {
+    const std::string which = point.count > 1 ? fmt::format(" as element {}", i) : "";
+    if (is_invalid_element(point, registers))
+      return fmt::format("the device gives 0x{:0{}X}{}, which the map calls invalid",
+                         raw_value(point.format, registers), codec::width(point.format.type) / 4, which);
+    const double raw = codec::published(registers, point.format, {});
+    if (raw < point.faults.below)
+      return fmt::format("the device gives {:.15g}{}, below fault_below ({:.15g})", raw, which,
+                         point.faults.below);
+    if (raw > point.faults.above)
+      return fmt::format("the device gives {:.15g}{}, above fault_above ({:.15g})", raw, which,
+                         point.faults.above);
+  }
+  return {};
 }
 
 }  // namespace coupler::host

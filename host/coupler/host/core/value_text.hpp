@@ -18,7 +18,10 @@ namespace coupler::host {
 tl::expected<void, std::string> parse_value(std::string_view text, const Point& point,
                                             std::uint16_t* registers);
 
-/// The value in those registers, as parse_value() takes it.
+/// Returns in words why the registers of a point are not to be used: is_invalid(), or is_fault().
+std::string unusable_text(const std::uint16_t* registers, const Point& point);
+
+/// The value in those host_registers(point) registers, as parse_value() takes it.
 std::string format_value(const std::uint16_t* registers, const Point& point);
 
 }  // namespace coupler::host

@@ -11,11 +11,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "coupler/codec/scale.hpp"
 #include "coupler/codec/value.hpp"
 #include "coupler/host/core/value_text.hpp"
 #include "coupler/host/record/value_json.hpp"
 #include "coupler/json/json_text.hpp"
+#include "coupler/map/published.hpp"
 
 namespace coupler::host {
 namespace {
@@ -33,7 +33,7 @@ double as_number(const T& value) {
 double number_of(const std::uint16_t* registers, const Point& point) {
   if (point.count > 1 || point.format.type == codec::Type::STRING) return std::nan("");
   if (holds_bits(point.table)) return registers[0] != 0 ? 1 : 0;
-  if (codec::is_scalable(point.format.type)) return codec::published(registers, point.format, point.scale);
+  if (codec::is_scalable(point.format.type)) return published(registers, point);
   return std::visit([](const auto& value) { return as_number(value); },
                     codec::decode(registers, point.format));
 }
@@ -75,7 +75,14 @@ void LiveValues::on_values(Span<const std::uint32_t> points) {
 void LiveValues::on_no_values(Span<const std::uint32_t> points, Time at) {
   const std::lock_guard lock(mutex_);
   bool any = false;
-  for (const std::uint32_t i : points) any |= take_quality(i, table_.quality(i, at), at);
+  for (const std::uint32_t i : points) {
+    State& state = points_[i];
+    const std::uint64_t number = table_.number(i);
+    const bool is_known = state.quality == table_.last_read(i) && state.unusable_number == number;
+    if (!table_.is_usable(i) && is_known && table_.state_when_online(i, at) == state.quality) continue;
+    any |= take_quality(i, table_.quality(i, at), at);
+    state.unusable_number = number;
+  }
   if (any) news_.notify_all();
 }
 
@@ -108,10 +115,10 @@ void LiveValues::on_loss(const std::string& why) {
   news_.notify_all();
 }
 
-/// Notes that a point is refused or stale. Returns whether that is news for the pages. All other qualities
-/// follow from new values and from the state of the connection.
+/// Notes that a point is refused, unusable or stale. Returns whether that is news for the pages. All other
+/// qualities follow from new values and from the state of the connection.
 bool LiveValues::take_quality(std::uint32_t i, const PointQuality& now, Time at) {
-  if (!now.is_refused() && now.state != Quality::stale) return false;
+  if (!now.is_refused() && !PointQuality::is_unusable(now.state) && now.state != Quality::stale) return false;
   const unsigned code = now.is_refused() ? now.refused_with() : 0;
   State& state = points_[i];
   if (state.quality == now.state && state.exception == code && state.why == now.why) return false;
@@ -176,15 +183,16 @@ std::string LiveValues::news(std::uint64_t& seen, Time earliest, Time until) {
                       {"changes", changes_of(state)},
                       {"on", state.seen_on},
                       {"off", state.seen_off}};
-    if (state.number > 0) {
-      const ValueTable::Value value = table_.get(static_cast<std::uint32_t>(i), now);
+    const ValueTable::Value value = table_.get(static_cast<std::uint32_t>(i), now);
+    if (state.number > 0 && value.has_value()) {
       json["value"] = value_json(value.registers.data(), point);
       json["text"] = format_value(value.registers.data(), point);
       json["age"] = std::chrono::duration<double>(now - state.changed_at).count();
     }
     const bool is_refused = PointQuality::is_refused(state.quality);
     if (is_refused && state.exception != 0) json["exception"] = state.exception;
-    if (is_refused && !state.why.empty()) json["why"] = state.why;
+    if ((is_refused || PointQuality::is_unusable(state.quality)) && !state.why.empty())
+      json["why"] = state.why;
     points[std::string(point.name)] = std::move(json);
   }
   ordered_json json{{"revision", revision_}, {"points", std::move(points)}};

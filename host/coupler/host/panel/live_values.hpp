@@ -52,12 +52,13 @@ class LiveValues : public Sink {
   struct State {
     PointQuality::State quality = PointQuality::State::never_read;
     unsigned exception = 0;
-    std::string why;             ///< the reason if there was no exception
-    Time changed_at{};           ///< the time of the last change of the value
-    std::uint64_t revision = 1;  ///< the revision of the last change that a page is to see
-    std::uint64_t number = 0;    ///< see ValueTable::number(); 0 if there is no value
-    bool seen_on = false;        ///< the point was on, or not 0, at least once
-    bool seen_off = false;       ///< the point was off, or 0, at least once
+    std::string why;                    ///< the reason if there was no exception
+    Time changed_at{};                  ///< the time of the last change of the value
+    std::uint64_t revision = 1;         ///< the revision of the last change that a page is to see
+    std::uint64_t number = 0;           ///< see ValueTable::number(); 0 if there is no value
+    std::uint64_t unusable_number = 0;  ///< the same when the point was refused or unusable last
+    bool seen_on = false;               ///< the point was on, or not 0, at least once
+    bool seen_off = false;              ///< the point was off, or 0, at least once
     History history;
   };
   /// Since the first value.

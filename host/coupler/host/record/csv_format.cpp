@@ -39,9 +39,10 @@ class CsvFormat final : public RecordFormat {
     return "t,utc,point,value,quality,u\n";
   }
   std::string value(Moment at, const Point& point, Span<const std::uint16_t> registers,
-                    Nanoseconds uncertainty) const override {
-    return row(at, point.name, format_value(registers.data(), point), "good",
-               fmt::format("{:.6f}", seconds(uncertainty)));
+                    Nanoseconds uncertainty, PointQuality::State quality) const override {
+    const bool is_good = quality == PointQuality::State::good;
+    return row(at, point.name, is_good ? format_value(registers.data(), point) : std::string(),
+               to_string(quality), fmt::format("{:.6f}", seconds(uncertainty)));
   }
   std::string no_value(Moment at, const Point& point, PointQuality::State quality,
                        unsigned exception) const override {

@@ -13,9 +13,11 @@ class JsonFormat final : public RecordFormat {
  public:
   std::string head(const record::Head& head, Moment at) const override { return record::head_line(head, at); }
   std::string value(Moment at, const Point& point, Span<const std::uint16_t> registers,
-                    Nanoseconds uncertainty) const override {
-    return record::value_line(at, point.name, json_text(value_json(registers.data(), point)), uncertainty,
-                              holds_bits(point.table) ? Span<const std::uint16_t>() : registers);
+                    Nanoseconds uncertainty, PointQuality::State quality) const override {
+    const bool is_good = quality == PointQuality::State::good;
+    return record::value_line(
+        at, point.name, is_good ? json_text(value_json(registers.data(), point)) : std::string("null"),
+        uncertainty, holds_bits(point.table) ? Span<const std::uint16_t>() : registers, to_string(quality));
   }
   std::string no_value(Moment at, const Point& point, PointQuality::State quality,
                        unsigned exception) const override {

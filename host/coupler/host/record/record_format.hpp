@@ -18,9 +18,9 @@ class RecordFormat {
   virtual ~RecordFormat() = default;
   /// Returns the beginning of a file.
   virtual std::string head(const record::Head& head, record::Moment at) const = 0;
-  /// `registers`: as TypedValue takes them.
+  /// `registers`: those of range(point). `quality`: good, or invalid or fault, then there is no value.
   virtual std::string value(record::Moment at, const Point& point, Span<const std::uint16_t> registers,
-                            record::Nanoseconds uncertainty) const = 0;
+                            record::Nanoseconds uncertainty, PointQuality::State quality) const = 0;
   virtual std::string no_value(record::Moment at, const Point& point, PointQuality::State quality,
                                unsigned exception) const = 0;
   virtual std::string online(record::Moment at, std::optional<bool> is_node) const = 0;

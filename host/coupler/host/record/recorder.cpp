@@ -17,6 +17,7 @@ namespace {
 
 using record::Moment;
 using record::Nanoseconds;
+using State = PointQuality::State;
 
 record::Head head_of(const Map& map, std::string device) {
   record::Head head{std::string(map.name), std::move(device), fingerprint_text(map.fingerprint),
@@ -66,22 +67,38 @@ void Recorder::on_values(Span<const std::uint32_t> points) {
   const std::lock_guard lock(mutex_);
   for (const std::uint32_t i : points) {
     Line& line = lines_[i];
-    const auto before = std::exchange(line.quality, PointQuality::State::good);
+    const auto before = std::exchange(line.quality, State::good);
     const std::uint64_t number = values_.number(i);
     const bool is_new = std::exchange(line.number, number) != number;
-    if (before == PointQuality::State::good && !is_new) continue;
+    if (before == State::good && !is_new) continue;
     ++counts_.changes;
     const Stamp stamp = values_.stamp(i);
     const Point& point = map_.points[i];
     queue(format_.value(moment(stamp.at), point, {values_.registers(i), range(point).count()},
-                        stamp.uncertainty));
+                        stamp.uncertainty, State::good));
   }
 }
 
 void Recorder::on_no_values(Span<const std::uint32_t> points, Time at) {
   const std::lock_guard lock(mutex_);
-  if (!online_) return;
-  for (const std::uint32_t i : points) queue_exception(i, at);
+  for (const std::uint32_t i : points)
+    if (PointQuality::is_unusable(values_.state_when_online(i, at)))
+      queue_unusable(i);
+    else if (online_)
+      queue_exception(i, at);
+}
+
+void Recorder::queue_unusable(std::uint32_t i) {
+  Line& line = lines_[i];
+  const std::uint64_t number = values_.number(i);
+  const State quality = values_.last_read(i);
+  if (line.quality == quality && line.number == number) return;
+  line = {quality, 0, number};
+  ++counts_.changes;
+  const Stamp stamp = values_.stamp(i);
+  const Point& point = map_.points[i];
+  queue(format_.value(moment(stamp.at), point, {values_.registers(i), range(point).count()},
+                      stamp.uncertainty, quality));
 }
 
 void Recorder::queue_exception(std::uint32_t i, Time at) {
@@ -105,7 +122,7 @@ void Recorder::on_online(bool online) {
   counts_.was_online |= online;
   awaits_reason_ = !online;
   if (!online) {  // the values may have changed since: each is recorded again
-    for (Line& line : lines_) line.quality = PointQuality::State::offline;
+    for (Line& line : lines_) line.quality = State::offline;
     return;
   }
   why_offline_.clear();
@@ -132,14 +149,15 @@ void Recorder::end_comes() {
 std::string Recorder::line_of(std::uint32_t i, Time now) {
   const Point& point = map_.points[i];
   Line& line = lines_[i];
-  if (line.quality == PointQuality::State::offline || line.quality == PointQuality::State::never_read)
-    return {};
-  if (line.quality != PointQuality::State::good)
+  if (line.quality == State::offline || line.quality == State::never_read) return {};
+  if (line.quality != State::good && !PointQuality::is_unusable(line.quality))
     return format_.no_value(moment(now), point, line.quality, line.exception);
   const ValueTable::Value value = values_.get(i, now);
   line.number = value.number;
+  line.quality = value.read_as;
   return format_.value(moment(std::max(now, value.stamp.at)), point,
-                       {value.registers.data(), value.registers.size()}, value.stamp.uncertainty);
+                       {value.registers.data(), range(point).count()}, value.stamp.uncertainty,
+                       value.read_as);
 }
 
 std::string Recorder::device_line(Moment at) const {
@@ -194,9 +212,8 @@ std::string Recorder::end(Time now) {
 Recorder::Counts Recorder::counts() const {
   const std::lock_guard lock(mutex_);
   Counts counts = counts_;
-  counts.good = static_cast<std::size_t>(std::count_if(lines_.begin(), lines_.end(), [](const Line& line) {
-    return line.quality == PointQuality::State::good;
-  }));
+  counts.good = static_cast<std::size_t>(std::count_if(
+      lines_.begin(), lines_.end(), [](const Line& line) { return line.quality == State::good; }));
   return counts;
 }
 

@@ -76,6 +76,7 @@ class Recorder : public Sink {
     unsigned exception = 0;
     std::uint64_t number = 0;  ///< of its value, see ValueTable
   };
+  void queue_unusable(std::uint32_t point);
   void queue_exception(std::uint32_t point, Time at);
   record::Moment moment(Time at) const;
   void queue(const std::string& line);

@@ -154,7 +154,14 @@ void DeviceDriver::on_values(Span<const std::uint32_t> points) {
 }
 
 void DeviceDriver::on_no_values(Span<const std::uint32_t> points, Time at) {
+  for (const std::uint32_t point : points)
+    if (!values_.is_usable(point)) renew(point);  // so that subscribers see the value come back
   for (const auto& follower : followers_) follower->sink().on_no_values(points, at);
+}
+
+void DeviceDriver::renew(std::uint32_t point) {
+  for (const auto* publishers : {&publishers_, &stamped_})
+    if (const auto& publisher = (*publishers)[point]) publisher->renew();
 }
 
 void DeviceDriver::measure_wall() {
@@ -181,9 +188,7 @@ void DeviceDriver::on_identified(Identity::Verdict verdict) {
 
 void DeviceDriver::on_online(bool online) {
   if (online)  // values from before the interruption are history
-    for (const auto* publishers : {&publishers_, &stamped_})
-      for (const auto& publisher : *publishers)
-        if (publisher) publisher->renew();
+    for (std::uint32_t i = 0; i < publishers_.size(); ++i) renew(i);
   publish_online_(online);
   for (const auto& follower : followers_) follower->sink().on_online(online);
 }

@@ -67,6 +67,7 @@ class DeviceDriver : public Sink {
   void log(Level level, const std::string& text);
   DeviceThread& driven();
   void start_followers(const Followed& followed);
+  void renew(std::uint32_t point);
   void measure_wall();
   void refuse(std::optional<std::uint32_t> point, const std::string& what);
 

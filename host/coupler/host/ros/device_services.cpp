@@ -155,10 +155,15 @@ ServiceThread::ReadAnswer DeviceServices::answer_read(const std::string& name) {
   subscribers_.add(index);
   answer.success = values_.wait(index, now, now + answer_timeout(map_, point), ValueTable::Offline::gives_up);
   subscribers_.remove(index);
-  if (answer.success)
-    answer.value = format_value(values_.get(index, now).registers.data(), point);
-  else
+  const ValueTable::Value value = values_.get(index, now);
+  if (!answer.success) {
     answer.message = why_no_value(point);
+  } else if (value.has_value()) {
+    answer.value = format_value(value.registers.data(), point);
+  } else {
+    answer.success = false;
+    answer.message = fmt::format("no value of {}: {}", point.name, value.why_unusable);
+  }
   return answer;
 }
 

@@ -17,6 +17,7 @@
 #include "coupler/codec/scale.hpp"
 #include "coupler/codec/text.hpp"
 #include "coupler/map/point.hpp"
+#include "coupler/map/published.hpp"
 #include "coupler/map/typed_value.hpp"
 
 namespace coupler::host {
@@ -144,7 +145,7 @@ template <class M>
 struct ScaledMessage {
   using Message = M;
   static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
-    message.data = codec::published(registers, point.format, point.scale);
+    message.data = published(registers, point);
   }
   static std::string encode(const Message& message, const Point& point, std::uint16_t* registers) {
     return encode_scaled(message.data, point, registers);

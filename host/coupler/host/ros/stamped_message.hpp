@@ -48,7 +48,7 @@ template <class M>
 struct StampedScaled {
   using Message = M;
   static void decode(const std::uint16_t* registers, const Point& point, Message& message) {
-    message.value = codec::published(registers, point.format, point.scale);
+    message.value = published(registers, point);
   }
 };
 

@@ -15,6 +15,11 @@ namespace coupler::host {
 /// The status is published at least this often.
 constexpr auto status_interval = std::chrono::seconds(1);
 
+/// The numbers of PointQuality::State::invalid and fault. The message PointStatus has no names for them,
+/// because other constants would make it another message to ROS 1, and bags could not be played.
+constexpr int invalid_quality = 7;
+constexpr int fault_quality = 8;
+
 /// The message of `<name>/status`, coupler_driver/Status of either ROS: its contents, and when it is
 /// published.
 template <class Message>
@@ -76,7 +81,8 @@ class Status {
       changed |= assign(status.write_outcome, number_of(quality.last_write));
       changed |= assign(status.write_text, quality.last_write_text);
       const bool quality_changed = assign(status.quality, static_cast<std::uint8_t>(quality.state));
-      if (!(assign(status.exception, code) || quality_changed)) continue;
+      const bool has_reason = PointQuality::is_unusable(quality.state) && status.text != in_words(quality);
+      if (!(assign(status.exception, code) || quality_changed || has_reason)) continue;
       status.text = in_words(quality);
       changed = true;
     }
@@ -90,7 +96,9 @@ class Status {
                   static_cast<int>(State::exception) == PointStatus::EXCEPTION &&
                   static_cast<int>(State::rejected) == PointStatus::REJECTED &&
                   static_cast<int>(State::offline) == PointStatus::OFFLINE &&
-                  static_cast<int>(State::not_wanted) == PointStatus::NOT_WANTED);
+                  static_cast<int>(State::not_wanted) == PointStatus::NOT_WANTED &&
+                  static_cast<int>(State::invalid) == invalid_quality &&
+                  static_cast<int>(State::fault) == fault_quality);
     static_assert(outcome_number(Outcome::ok) == PointStatus::WRITE_OK &&
                   outcome_number(Outcome::superseded) == PointStatus::WRITE_SUPERSEDED &&
                   outcome_number(Outcome::exception) == PointStatus::WRITE_EXCEPTION &&

@@ -27,8 +27,9 @@ constexpr std::string_view always[] = {"table", "name",   "address", "type",
                                        "order", "access", "units",   "description"};
 
 std::string scale_text(const codec::Scale& scale) {
-  return scale.offset == 0 ? fmt::to_string(scale.gain)
-                           : fmt::format("{{gain: {}, offset: {}}}", scale.gain, scale.offset);
+  if (scale.offset == 0 && !scale.has_exponent()) return fmt::to_string(scale.gain);
+  return fmt::format("{{gain: {}, offset: {}{}{}}}", scale.gain, scale.offset,
+                     scale.has_exponent() ? ", exponent_of: " : "", scale.exponent_of);
 }
 
 void add_format(const Point& point, Cells& cells) {

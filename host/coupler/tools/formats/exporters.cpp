@@ -94,6 +94,18 @@ void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings) 
   }
 }
 
+void warn_of_raw_meaning(const Point& point, bool writes_invalid, ConversionWarnings& warnings) {
+  if (!point.invalid.empty() && !writes_invalid)
+    warnings.add("raw values that mean 'no value' are left out, so they look like values",
+                 "compare the value with them in the other program", point.name);
+  if (point.faults.present())
+    warnings.add("'fault_below' and 'fault_above' are left out, so faults look like values",
+                 "compare the raw value with them in the other program", point.name);
+  if (point.scale.has_exponent())
+    warnings.add("the power of ten of a scale is in a register, so it is left out",
+                 "multiply the value by 10 to the power of that point in the other program", point.name);
+}
+
 std::string UniqueNames::make(const std::string& name, std::string_view point) {
   std::string unique = name;
   for (int n = 2; !taken_.insert(unique).second; ++n) unique = fmt::format("{}_{}", name, n);

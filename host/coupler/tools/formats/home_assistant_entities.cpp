@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each platform of the integration reads and writes: homeassistant/components/modbus, one file each.
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
+#include <limits>
 
 #include <fmt/format.h>
 
+#include "coupler/map/loader/scalar.hpp"
 #include "coupler/tools/formats/home_assistant_points.hpp"
 #include "coupler/tools/formats/map_tree.hpp"
 
@@ -21,13 +24,22 @@ void warn_of_reading_only(Table table, Entity& entity) {
                 "remove it where the host shall write");
 }
 
+/// Returns whether the text is a whole number that has room in so many registers, with a sign or as bits.
+bool fits(std::string_view text, unsigned registers) {
+  const unsigned bits = std::min(16 * registers, 64U);
+  if (const auto number = loader::parse_unsigned(text)) return *number <= ~std::uint64_t{0} >> (64 - bits);
+  const auto negative = loader::parse_integer(text);
+  return negative && *negative >= std::numeric_limits<std::int64_t>::min() >> (64 - bits);
+}
+
 void add_sensor(Entity& entity) {
   Settings& settings = entity.settings();
   const Table table = Entity::table_of("input_type", "holding", settings);
   const double gain = settings.number("scale").value_or(1);
   const double offset = settings.number("offset").value_or(0);
   const std::string units = settings.text("unit_of_measurement", "");
-  for (const std::string_view key : {"min_value", "max_value", "nan_value", "zero_suppress"})
+  const std::string none = settings.text("nan_value", "");
+  for (const std::string_view key : {"min_value", "max_value", "zero_suppress"})
     if (settings.find(key) != nullptr)
       entity.lose(fmt::format("'{}' changes what Home Assistant shows and is not carried over", key),
                   "a map publishes what the device holds; 'min' and 'max' say what is to be expected");
@@ -35,6 +47,13 @@ void add_sensor(Entity& entity) {
   for (const RegisterValue& value : read_data_type(settings)) {
     FoundPoint found = entity.with_value(value, "", table, entity.address(), PointUse::read);
     if (value.is_number) entity.scale(found, gain, offset);
+    if (value.is_number && !none.empty()) {
+      if (fits(none, value.registers))
+        found.entry.children.push_back(scalar("invalid", none, entity.given().at));
+      else
+        entity.lose(fmt::format("'nan_value: {}' is no value of the registers", none),
+                    "write what the device gives for no value as 'invalid', as in 'invalid: 0x8000'");
+    }
     if (!units.empty()) found.entry.children.push_back(scalar("units", units, entity.given().at, true));
     entity.add(std::move(found));
   }

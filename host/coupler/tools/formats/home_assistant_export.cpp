@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/codec/number.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/tools/formats/map_tree.hpp"
 
@@ -107,6 +111,23 @@ std::string format_keys(const Point& point, std::string_view indent) {
     keys += fmt::format("{}precision: {}\n", indent,
                         std::max(decimals_of(point.scale.gain), decimals_of(point.scale.offset)));
   return keys;
+}
+
+/// Home Assistant compares one number, and its negative, with the raw value of a whole number: the negative
+/// may be no value of the type.
+std::optional<std::int64_t> nan_value_of(const Point& point) {
+  const Type type = point.format.type;
+  const bool is_one = point.invalid.size() == 1 && point.invalid[0].first == point.invalid[0].last;
+  if (!is_one || !codec::is_scalable(type) || is_float(type)) return std::nullopt;
+  return codec::with_number(type, [&](auto zero) -> std::optional<std::int64_t> {
+    using T = decltype(zero);
+    const T none = static_cast<T>(point.invalid[0].first);
+    if constexpr (std::is_same_v<T, std::uint64_t>)
+      return std::nullopt;
+    else if (std::is_unsigned_v<T> || none == std::numeric_limits<T>::lowest() || none == 0)
+      return static_cast<std::int64_t>(none);
+    return std::nullopt;
+  });
 }
 
 /// Lists of entities, by what Home Assistant calls them.
@@ -209,6 +230,7 @@ class EntityWriter {
     out += head(point, element, read_range(point)) + input_type + format_keys(point, indent);
     if (point.scale.gain != 1) out += fmt::format("{}scale: {}\n", indent, point.scale.gain);
     if (point.scale.offset != 0) out += fmt::format("{}offset: {}\n", indent, point.scale.offset);
+    if (const auto none = nan_value_of(point)) out += fmt::format("{}nan_value: {}\n", indent, *none);
     if (!point.units.empty()) out += fmt::format("{}unit_of_measurement: {}\n", indent, text(point.units));
     // Each sensor gets its id in the order of the file, because Home Assistant numbers sensors with equal
     // names in that order.
@@ -226,6 +248,7 @@ class EntityWriter {
   }
 
   void add_warnings(const Point& point) {
+    warn_of_raw_meaning(point, nan_value_of(point).has_value(), warnings_);
     if (is_readable(point) &&
         (point.host.rate > 0 ? point.host.rate : map_.polling.rate) > 1.0 / shortest_interval)
       warnings_.add("entities are read every 5 s, since shorter intervals make Home Assistant unstable",

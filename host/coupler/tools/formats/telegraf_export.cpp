@@ -93,6 +93,7 @@ std::string comment_of(const Point& point) {
 bool is_at_the_end(const Point& point) { return read_range(point).end() > 0xFFFF; }
 
 void add_warnings(const Point& point, ConversionWarnings& warnings) {
+  warn_of_raw_meaning(point, false, warnings);
   if (point.scale.offset != 0)
     warnings.add("the offset of a scale is left out", "add it with [[processors.scale]]", point.name);
   if (!point.units.empty() || !point.description.empty())

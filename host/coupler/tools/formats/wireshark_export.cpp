@@ -81,6 +81,7 @@ Export write_wireshark(const Map& map) {
         fmt::format(
             "capture at a gateway that translates, and give its port: -o {0}.port:N -o mbtcp.tcp.port:N",
             proto));
+  for (const Point& point : map.points) warn_of_raw_meaning(point, false, out.warnings);
   warn_of_node_and_driver_keys(map, out.warnings);
   return out;
 }

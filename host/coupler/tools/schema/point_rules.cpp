@@ -126,8 +126,10 @@ Json with_values(const Json& one, bool has_safe_value = true) {
 
 /// A scale that changes the value; without one, `scale: 1` and a gain of 1 are the same.
 Json is_scaled() {
-  const Json nothing{{"type", "object"},
-                     {"properties", {{"gain", {{"const", 1}}}, {"offset", {{"const", 0}}}}}};
+  const Json nothing{
+      {"type", "object"},
+      {"properties",
+       {{"gain", {{"const", 1}}}, {"offset", {{"const", 0}}}, {"exponent_of", false}, {"raw", false}}}};
   return has("scale", {{"not", {{"anyOf", {{{"const", 1}}, nothing}}}}});
 }
 
@@ -162,11 +164,12 @@ Json others_rule(Type type) {
   Words refused;
   const bool number = codec::is_scalable(type);
   const bool own_registers = number && !is_part(type);
-  if (!number) refused = {"scale", "min", "max", "deadband"};
+  if (!number) refused = {"scale", "min", "max", "deadband", "fault_below", "fault_above"};
   if (!is_whole(type)) refused.push_back("values");
   if (!own_registers || is_float(type)) refused.push_back("counter");
   if (!own_registers) refused.insert(refused.end(), {"iio", "pwm"});
   if (type != Type::BOOL) refused.push_back("latched");
+  if (type == Type::STRING) refused.push_back("invalid");
   Json rule = none_of(refused, registers);
   if (is_part(type) || type == Type::STRING) rule["properties"]["count"] = {{"const", 1}};
   if (codec::width(type) > 16) rule["properties"]["write_function"] = {{"not", is("single")}};
@@ -181,6 +184,9 @@ void add_rules_of_registers(Section section, Rules& rules) {
   scale["properties"] = {{"gain", not_zero}};
   rules.push_back(only("scale", std::move(scale)));
   rules.push_back(when(is_scaled(), only("values", false)));
+  rules.push_back(only("scale", {{"properties", {{"exponent_of", {{"minLength", 1}}}}}}));
+  rules.push_back(when(has("scale", {{"type", "object"}, {"required", {"exponent_of"}}}),
+                       none_of({"initial", "min", "max", "iio", "pwm"}, section)));
   rules.push_back(not_both("counter", "iio"));
   if (section == Section::input_register) return;
   rules.push_back(not_both("counter", "pwm"));
@@ -231,6 +237,13 @@ void add_rules_of_arrays(Section section, Rules& rules) {
   rules.push_back(when(is_an_array(), std::move(array)));
 }
 
+/// `scale:` as a map.
+Rules rules_of_a_scale() {
+  Rules rules{{{"dependencies", {{"raw", {"value"}}, {"value", {"raw"}}}}}};
+  for (const std::string_view factor : {"gain", "offset"}) rules.push_back(not_both("raw", factor));
+  return rules;
+}
+
 /// `line:` as a map.
 Rules rules_of_a_line() {
   return {{{"oneOf", {has("name"), {{"required", {"chip", "offset"}}}}}},
@@ -277,6 +290,8 @@ Rules point_rules(Section section) {
   Rules rules;
   if (loader::overlap(section, lines)) {
     rules = rules_of_a_line();
+  } else if (section == Section::scale) {
+    rules = rules_of_a_scale();
   } else if (section == Section::wire) {
     rules = rules_of_a_wire();
   } else if (section == Section::iio) {

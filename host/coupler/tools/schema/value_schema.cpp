@@ -179,6 +179,18 @@ Json value_schema(const Key& key) {
       return {{"type", {"string", "number", "boolean", "array"}},
               {"items", {{"type", {"string", "number", "boolean", "array"}}}}};  // an array of WORDs, as bits
     case ValueKind::list: return {{"type", "array"}, {"minItems", 1}, {"items", {{"type", "string"}}}};
+    case ValueKind::ends:
+      return {{"type", "array"},
+              {"items", {{"type", "number"}}},
+              {"minItems", 2},
+              {"maxItems", 2},
+              {"uniqueItems", true}};
+    case ValueKind::raw_values: {
+      const Json raw{{"type", {"integer", "number", "string"}}};
+      const Json range{{"type", "array"}, {"items", raw}, {"minItems", 2}, {"maxItems", 2}};
+      return any_of(
+          {raw, {{"type", "array"}, {"items", any_of({raw, range})}, {"minItems", 1}, {"maxItems", 16}}});
+    }
     case ValueKind::names:
       return {{"type", "object"},
               {"minProperties", 1},

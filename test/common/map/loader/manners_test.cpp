@@ -234,5 +234,51 @@ TEST(Manners, What_is_safe_for_an_array_of_coils_is_one_word_or_a_list) {
   EXPECT_EQ(OnePoint("coils", car + "hold}", "on_shutdown: safe")->safe, Safe::hold);
 }
 
+TEST(Manners, Two_points_of_a_line_are_a_gain_and_an_offset) {
+  const OnePoint current("input_registers",
+                         "{address: 0, type: UINT, scale: {raw: [4000, 20000], value: [0, 10]}}");
+  EXPECT_EQ(current->scale.gain, 0.000625);
+  EXPECT_EQ(current->scale.offset, -2.5);
+  const OnePoint falling("input_registers",
+                         "{address: 0, type: INT, scale: {raw: [0, -27648], value: [100, 0]}}");
+  EXPECT_DOUBLE_EQ(-27648 * falling->scale.gain + falling->scale.offset, 0);
+  EXPECT_EQ(falling->scale.offset, 100);
+}
+
+TEST(Manners, Raw_values_that_are_none_are_the_bits_of_the_type) {
+  using Ranges = std::vector<std::pair<std::uint64_t, std::uint64_t>>;
+  const std::pair<const char*, Ranges> cases[] = {
+      {"type: INT, invalid: 0x8000", {{0x8000, 0x8000}}},
+      {"type: INT, invalid: -32768", {{0x8000, 0x8000}}},
+      {"type: INT, invalid: 32768", {{0x8000, 0x8000}}},
+      {"type: SINT, offset: low, invalid: [-1, 0x7F]", {{0xFF, 0xFF}, {0x7F, 0x7F}}},
+      {"type: INT, invalid: [[-2, 3], [0x7FF0, 0x7FFF]]", {{0xFFFE, 0xFFFF}, {0, 3}, {0x7FF0, 0x7FFF}}},
+      {"type: INT, invalid: [[-5, -2]]", {{0xFFFB, 0xFFFE}}},
+      {"type: ULINT, invalid: 0xFFFFFFFFFFFFFFFF", {{~std::uint64_t{0}, ~std::uint64_t{0}}}},
+      {"type: LINT, invalid: -9223372036854775808", {{1ULL << 63U, 1ULL << 63U}}},
+      {"type: BOOL, bit: 2, invalid: 0xFFFF", {{0xFFFF, 0xFFFF}}},
+      {"type: REAL, invalid: -9999", {{0xC61C3C00, 0xC61C3C00}}},
+      {"type: REAL, invalid: 0x7FC00000", {{0x7FC00000, 0x7FC00000}}},
+      {"type: REAL, invalid: nan", {{0x7F800001, 0x7FFFFFFF}, {0xFF800001, 0xFFFFFFFF}}},
+      {"type: REAL, invalid: [[-2, -1], [1, 2]]", {{0xBF800000, 0xC0000000}, {0x3F800000, 0x40000000}}},
+      {"type: LREAL, invalid: .nan",
+       {{0x7FF0000000000001, 0x7FFFFFFFFFFFFFFF}, {0xFFF0000000000001, 0xFFFFFFFFFFFFFFFF}}},
+  };
+  for (const auto& [options, ranges] : cases) {
+    const OnePoint point("input_registers", fmt::format("{{address: 0, {}}}", options));
+    Ranges found;
+    for (const auto& [first, last] : point->invalid) found.emplace_back(first, last);
+    EXPECT_EQ(found, ranges) << options;
+  }
+}
+
+TEST(Manners, An_input_may_begin_without_a_value_and_have_a_name_for_it) {
+  const OnePoint temp(
+      "input_registers",
+      "{address: 0, type: INT, invalid: -32768, initial: -32768, values: {-32768: none, 0: cold}}");
+  EXPECT_EQ(temp->initial[0], 0x8000);
+  EXPECT_EQ(temp->values.size(), 2U);
+}
+
 }  // namespace
 }  // namespace coupler

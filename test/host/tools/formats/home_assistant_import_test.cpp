@@ -211,13 +211,22 @@ TEST(HomeAssistantImport, The_fastest_interval_is_the_maps_rate) {
   EXPECT_THAT(imported.said, HasSubstr("('scan_interval: 0') is read at the map's rate: c;"));
 }
 
+TEST(HomeAssistantImport, A_nan_value_is_what_the_map_calls_invalid) {
+  const Imported imported =
+      hub("sensors: [{name: s, address: 3, data_type: int16, nan_value: 0x8000}, {name: t, address: 4, "
+          "data_type: uint32, "
+          "nan_value: \"0xFFFFFFFF\"}]");
+  EXPECT_THAT(imported.text(), AllOf(HasSubstr("invalid: 0x8000"), HasSubstr("invalid: 0xFFFFFFFF")));
+  EXPECT_THAT(imported.said, Not(HasSubstr("nan_value")));
+}
+
 TEST(HomeAssistantImport, What_a_map_has_no_key_for_is_told) {
   const Imported imported =
-      hub("sensors: [{name: s, address: 3, unique_id: x, nan_value: 0x8000, min_value: 2, colour: red}]",
+      hub("sensors: [{name: s, address: 3, unique_id: x, max_value: 9, min_value: 2, colour: red}]",
           "retries: 3, ");
   EXPECT_THAT(imported.said,
               AllOf(HasSubstr("'unique_id' belongs to Home Assistant and is not carried over: s;"),
-                    HasSubstr("'nan_value' changes what Home Assistant shows"),
+                    HasSubstr("'max_value' changes what Home Assistant shows"),
                     HasSubstr("'min_value' changes what Home Assistant shows"),
                     HasSubstr("warning: 'colour' is not carried over: a map has no key for it"),
                     HasSubstr("warning: 'retries' is not carried over: a map has no key for it")));

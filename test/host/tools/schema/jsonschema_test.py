@@ -76,7 +76,9 @@ KEYS = """bit: 3|offset: low|length: 6|encoding: ascii|ignore_byteorder: true|or
     safe: hold|safe: 1|safe: [on, off]|safe: 70000|line: GPIO1|line: 5|line: ""|line: {chip: a, offset: 1}|
     line: {chip: a}|line: {name: b, offset: 2}|line: {name: b}|line: {}|line: {name: b, active_low: true}|
     active_low: true|bias: pull_up|drive: open_drain|pulse: 200ms|pulse: 2h|debounce: 5ms|debounce: 2min|debounce: 0|units: mm|
-    units: true|description: 5""" % ((BITS_OF_A_WORD,) * 3)
+    units: true|description: 5|invalid: 255|invalid: [0x7F, [3, 9]]|invalid: []|invalid: [[1, 2, 3]]|fault_below: 5|
+    fault_above: on|scale: {raw: [0, 5], value: [0, 1]}|scale: {raw: [0, 5]}|scale: {raw: [0, 5], value: [0, 1], gain: 2}|
+    scale: {raw: [5, 5], value: [0, 1]}|scale: {raw: 5, value: [0, 1]}""" % ((BITS_OF_A_WORD,) * 3)
 CONTEXTS = ["count: 2", "access: read", "access: write", "scale: 0.5", "values: {0: idle, 100: run}", "publish: on_change",
             "line: GPIO7", "pulse: 1s", "iio: {device: d, channel: c}"]
 DIFFERENT_TYPES = {"BOOL", "SINT", "WORD", "INT", "REAL", "STRING"}

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <type_traits>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "coupler/codec/number.hpp"
+#include "coupler/map/loader/point_reader.hpp"
+#include "coupler/map/loader/scalar.hpp"
+
+namespace coupler::loader {
+namespace {
+
+using codec::Type;
+
+constexpr std::size_t longest_list = 16;
+constexpr std::string_view form =
+    "write it as in 'invalid: 0x8000', 'invalid: [0x7FFF, 0x8000]', or with a range "
+    "'invalid: [[0xFFF0, 0xFFFF]]'";
+
+std::string_view example_of(Type type) {
+  if (codec::is_float(type)) return "nan, -9999 or 0x7FC00000";
+  return codec::width(type) == 8 ? "0xFF" : "0x8000";
+}
+
+/// The raw value that a number or the bits in hexadecimal stand for. An integer may also be written as the
+/// unsigned number with the same bits.
+template <class T>
+std::optional<std::uint64_t> raw_of(std::string_view text) {
+  using Raw = typename codec::detail::Unsigned<sizeof(T)>::type;
+  const bool is_hexadecimal = text.substr(0, 2) == "0x" || text.substr(0, 2) == "0X";
+  if (std::is_integral_v<T> || is_hexadecimal)
+    if (const auto bits = parse_unsigned(text))
+      return *bits <= std::numeric_limits<Raw>::max() ? bits : std::nullopt;
+  if constexpr (std::is_floating_point_v<T>) {
+    const auto number = parse_number(text);
+    if (!number || std::fabs(*number) > static_cast<double>(std::numeric_limits<T>::max()))
+      return std::nullopt;
+    return codec::detail::bit_cast<Raw>(static_cast<T>(*number));
+  } else {
+    const auto number = parse_integer(text);
+    if (!number || *number < std::int64_t{std::numeric_limits<T>::lowest()}) return std::nullopt;
+    return static_cast<Raw>(*number);
+  }
+}
+
+/// IEEE 754: the exponent has all bits, and the fraction at least one.
+template <class T>
+std::vector<RawRange> not_a_number() {
+  using Raw = typename codec::detail::Unsigned<sizeof(T)>::type;
+  const Raw infinity = codec::detail::bit_cast<Raw>(std::numeric_limits<T>::infinity());
+  const Raw sign = Raw{1} << (8 * sizeof(T) - 1);
+  const auto all = static_cast<Raw>(sign - 1);
+  return {{infinity + Raw{1}, all}, {(infinity | sign) + Raw{1}, all | sign}};
+}
+
+class InvalidReader {
+ public:
+  InvalidReader(const Point& point, const Context& context) : point_(point), context_(context) {}
+
+  void read(const Entry& entry) {
+    if (entry.kind != Entry::Kind::list) return add(entry);
+    if (entry.children.empty() || entry.children.size() > longest_list) {
+      context_.problems.error(entry.at, fmt::format("'invalid' lists {} values", entry.children.size()),
+                              fmt::format("list 1 to {}; a range counts as one", longest_list));
+      return;
+    }
+    for (const Entry& element : entry.children) add(element);
+  }
+
+  std::vector<RawRange> ranges;
+
+ private:
+  void add(const Entry& element) {
+    if (element.kind == Entry::Kind::list && element.children.size() == 2) return add_range(element);
+    const bool is_text = element.kind == Entry::Kind::scalar && !element.quoted;
+    if (is_text && codec::is_float(point_.format.type) && is_nan(element.text)) {
+      for (const RawRange& range :
+           point_.format.type == Type::REAL ? not_a_number<float>() : not_a_number<double>())
+        ranges.push_back(range);
+      return;
+    }
+    if (const auto raw = raw_value(element)) ranges.push_back({*raw, *raw});
+  }
+
+  void add_range(const Entry& pair) {
+    const auto first = raw_value(pair.children[0]);
+    const auto last = raw_value(pair.children[1]);
+    if (!first || !last) return;
+    const std::uint64_t sign = (mask_of_type() >> 1U) + 1;
+    const bool is_signed = pair.children[0].text[0] == '-';
+    const bool is_float = codec::is_float(point_.format.type);
+    if (is_float && is_signed && *first >= *last && *last >= sign)
+      ranges.push_back({*last, *first});  // the greater the bits of a negative float, the smaller the number
+    else if (is_signed && *last < sign && !is_float)
+      ranges.insert(ranges.end(), {{*first, mask_of_type()}, {0, *last}});
+    else if (*first <= *last && !(is_float && is_signed))
+      ranges.push_back({*first, *last});
+    else
+      context_.problems.error(
+          pair.at,
+          fmt::format("'invalid' has a range from {} to {}, which does not ascend", pair.children[0].text,
+                      pair.children[1].text),
+          is_float && is_signed
+              ? "write one range of negative and one of positive numbers"
+              : "write both ends as numbers, or both as bits such as 0xFFF0, the smaller one first");
+  }
+
+  static bool is_nan(std::string_view text) {
+    return text == "nan" || text == "NaN" || text == ".nan" || text == ".NaN";
+  }
+
+  /// All bits of the type; a BOOL has those of its register.
+  std::uint64_t mask_of_type() const {
+    const unsigned width = point_.format.type == Type::BOOL ? 16 : codec::width(point_.format.type);
+    return ~std::uint64_t{0} >> (64 - width);
+  }
+
+  std::optional<std::uint64_t> raw_value(const Entry& entry) const {
+    std::optional<std::uint64_t> raw;
+    if (entry.kind == Entry::Kind::scalar && !entry.quoted)
+      raw = point_.format.type == Type::BOOL ? raw_of<std::uint16_t>(entry.text)
+                                             : codec::with_number(point_.format.type, [&](auto zero) {
+                                                 return raw_of<decltype(zero)>(entry.text);
+                                               });
+    if (!raw)
+      context_.problems.error(
+          entry.at,
+          fmt::format("'invalid' of type {} must be a raw value such as {}, not {}",
+                      to_string(point_.format.type), example_of(point_.format.type), shown(entry)),
+          std::string(form));
+    return raw;
+  }
+
+  const Point& point_;
+  const Context& context_;
+};
+
+}  // namespace
+
+void read_invalid(const Reader& reader, Point& point, const Context& context) {
+  const Entry* entry = reader.find("invalid");
+  if (entry == nullptr) return;
+  if (point.format.type == Type::STRING) {
+    context.problems.error(entry->key_at, "'invalid' does not apply to STRING",
+                           "remove it; a text that the device does not have is empty");
+    return;
+  }
+  InvalidReader values(point, context);
+  values.read(*entry);
+  if (!values.ranges.empty()) point.invalid = context.map.keep(values.ranges);
+}
+
+void read_faults(const Reader& reader, Point& point, const Context& context) {
+  Faults faults;
+  reader.fields(faults);
+  if (!faults.present()) return;
+  if (!codec::is_scalable(point.format.type)) {
+    for (const std::string_view key : {"fault_below", "fault_above"})
+      if (reader.has(key))
+        reader.refuse(key, fmt::format("'{}' does not apply to {}", key, to_string(point.format.type)),
+                      "use a type that is a number: SINT to ULINT, REAL or LREAL");
+    return;
+  }
+  const auto [least, most] = codec::published_range(point.format.type, {});
+  const auto check = [&](std::string_view key, double bound, bool has_effect) {
+    if (reader.has(key) && !has_effect)
+      context.problems.error(
+          reader.find(key)->at,
+          fmt::format(
+              "'{}' is {:.15g}, but raw values of {} are from {:.15g} to {:.15g}, so it has no effect", key,
+              bound, to_string(point.format.type), least, most),
+          "write a raw value between them, as it is in the register before 'scale'");
+  };
+  check("fault_below", faults.below, faults.below > least && faults.below <= most);
+  check("fault_above", faults.above, faults.above >= least && faults.above < most);
+  if (faults.below > faults.above)
+    context.problems.error(reader.find("fault_below")->at, "'fault_below' is above 'fault_above'",
+                           "exchange the two, or change one");
+  point.faults = faults;
+}
+
+}  // namespace coupler::loader
