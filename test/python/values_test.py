@@ -68,13 +68,13 @@ class Values(OfADevice):
         registers[40:47] = [0x8000, 0xFFFF, 0, 0, 1, 0xFFFF, 0xFF01]
         every = press.read_all()
         for point in (press.temp, press.bit, press.several, press.half):
-            self.assertEqual(self.raises("NoValue", point.read), f"{point.spec.name} has no value: the device says so")
+            self.assertEqual(self.raises("NoValue", point.read), f"{point.spec.name} has no value: the device gives what the map calls invalid")
             self.assertIsNone(every[point.spec.name])
         registers[40:47] = [215, 2, 7, 1, 0, 0xFFFE, 0x0201]
         self.assertEqual([point.read() for point in (press.temp, press.bit, press.several, press.half)],
                          [21.5, True, [0x10007, 0xFFFE0000], 2])
         self.assertEqual(self.raises("Refused", press.temp.write, -3276.8),
-                         "temp: refused: -32768 is what the device gives for no value; send another value")
+                         "temp: refused: -3276.8 means 'no value'; send another value")
 
     def test_a_raw_value_beyond_its_ends_is_a_fault(self):
         press = self.connected(PRESS + """\
@@ -86,7 +86,7 @@ class Values(OfADevice):
         self.device.tables["holding_registers"][70] = 12000
         self.assertEqual(press.bar.read(), 5)
 
-    def test_a_scale_has_its_power_of_ten_from_another_point(self):
+    def test_a_scale_has_its_exponent_from_another_point(self):
         press = self.connected(PRESS + """\
     power:    {address: 50, type: INT, access: read, scale: {gain: 2, offset: 1, exponent_of: power_sf}}
     power_sf: {address: 60, type: INT, access: read, invalid: 0x8000}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a device gives for no value is not published as one, and a scale has its power of ten from a register."""
+"""What a device gives for no value is not published as one, and a scale has its exponent from a register."""
 from coupler_driver.msg import Float64Stamped, PointStatus
 from coupler_driver.srv import Read
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -80,8 +80,8 @@ class NoValue(testing.RosTest):
         self.assertEqual((answer.success, answer.message),
                          (False, "no value of temp: the device gives 0x8000, which the map calls invalid"))
 
-    def test_a_value_has_the_power_of_ten_that_was_read_with_it(self):
-        self.assertIn("power_sf, the power of ten of its scale, has no value", self.status.quality("power", INVALID).text)
+    def test_a_value_has_the_exponent_that_was_read_with_it(self):
+        self.assertIn("power_sf, the exponent of its scale, has no value", self.status.quality("power", INVALID).text)
         self.registers[5] = 0x10000 - 2
         self.power.becomes(12.34)
         self.registers[5] = 1

@@ -13,7 +13,7 @@ namespace coupler::codec {
 struct Scale {
   double gain = 1;  ///< finite, not 0
   double offset = 0;
-  /// The point whose value is the power of ten by which the host multiplies the gain, see map/published.hpp.
+  /// The point with the exponent n: the host multiplies the gain by 10^n, see map/published.hpp.
   /// The functions of this file take it as 0.
   std::string_view exponent_of{};
 

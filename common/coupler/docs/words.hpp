@@ -22,11 +22,11 @@ std::string words(const codec::Scale& scale);
 std::string words(const Line& line);
 /// "active low, pull-up, debounce 5 ms"; empty if all is as usual.
 std::string details(const Line& line);
-/// "rising edges of button"
 /// Returns a text such as "0x8000, 0xFFF0 to 0xFFFF".
 std::string words(Span<const RawRange> ranges);
 /// Returns a text such as "below 3600, above 21000"; empty if there are none.
 std::string words(const Faults& faults);
+/// "rising edges of button"
 std::string words(const EdgeOf& edge);
 
 /// "-32768 … 32767" as it is published; empty if the type has no limits to show (texts, bits, floating

@@ -52,7 +52,7 @@ bool is_fault(const Point& point, const std::uint16_t* registers) {
   const std::size_t width = codec::registers(point.format);
   for (std::size_t i = 0; i < point.count; ++i) {
     const double raw = codec::published(registers + i * width, point.format, {});
-    if (raw < point.faults.below || raw > point.faults.above) return true;
+    if (point.faults.is_below(raw) || point.faults.is_above(raw)) return true;
   }
   return false;
 }

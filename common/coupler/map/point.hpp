@@ -120,6 +120,8 @@ struct Faults {
   double above = no_above;  ///< a greater number is a fault
 
   constexpr bool present() const { return below != no_below || above != no_above; }
+  constexpr bool is_below(double raw) const { return below != no_below && raw < below; }
+  constexpr bool is_above(double raw) const { return above != no_above && raw > above; }
 };
 
 /// One named value of a coupler. A literal type, so that a generated table is constant data.

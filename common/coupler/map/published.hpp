@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the host publishes of a point with a scale whose power of ten is in a register of the device.
+// What the host publishes of a point with a scale whose exponent is in another register of the device.
 #pragma once
 
 #include <cmath>
@@ -11,20 +11,20 @@
 
 namespace coupler {
 
-/// The greatest power of ten, and without its sign the least one, that a device may give. Others are taken as
-/// no value. SunSpec has -10 to 10.
+/// The largest magnitude of an exponent. A point whose exponent is beyond it is invalid. SunSpec uses -10 to
+/// 10.
 constexpr int most_exponent = 30;
 
-/// A point, and the one that has the power of ten of its scale: indices into Map::points.
+/// A point, and the one that holds the exponent of its scale: indices into Map::points.
 struct ScaledPoint {
   std::uint32_t point;
   std::uint32_t exponent;
 };
-/// Returns the points whose scale has a power of ten, in the map's order.
+/// Returns the points whose scale has an exponent, in the map's order.
 std::vector<ScaledPoint> points_with_exponent(const Map& map);
 
 /// The number of registers that a value of the point has in the host: those of read_range(point), and behind
-/// them the power of ten, an std::int16_t, if the scale has one.
+/// them the exponent, a std::int16_t, if the scale has one.
 constexpr std::size_t host_registers(const Point& point) {
   return read_range(point).count() + std::size_t{point.scale.has_exponent()};
 }

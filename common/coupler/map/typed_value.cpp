@@ -76,8 +76,7 @@ std::string forbidden_text(const Point& point, const ForbiddenValue& value) {
     case Forbidden::below_min: return fmt::format("{:g}{} is below the minimum", number, units_of(point));
     case Forbidden::above_max: return fmt::format("{:g}{} is above the maximum", number, units_of(point));
     case Forbidden::invalid:
-      return fmt::format("{} is what the device gives for no value ('invalid' in the map)",
-                         number_text(point, value.registers));
+      return fmt::format("{} means 'no value' ('invalid' in the map)", number_text(point, value.registers));
     case Forbidden::unnamed:
       return fmt::format("{} is not one of its values",
                          codec::to_string(codec::decode(value.registers, point.format)));
@@ -88,7 +87,7 @@ std::string forbidden_text(const Point& point, const ForbiddenValue& value) {
 std::string allowed_text(const Point& point) {
   if (!point.values.empty()) return value_names_text(point);
   if (limits_values(point)) return bounds_text(point);
-  return point.invalid.empty() ? "a finite number" : "another value";
+  return point.invalid.empty() || codec::is_float(point.format.type) ? "a finite number" : "another value";
 }
 
 }  // namespace coupler

@@ -56,7 +56,9 @@ std::optional<NotRead> why_not_read(const Map& map, const Point& point) {
   return std::nullopt;
 }
 
-Planner::Planner(const Map& map) : map_(map), scaled_(points_with_exponent(map)) {
+Planner::Planner(const Map& map)
+    : map_(map), scaled_(points_with_exponent(map)), is_exponent_(map.points.size()) {
+  for (const ScaledPoint& each : scaled_) is_exponent_[each.exponent] = true;
   std::array<std::vector<Range>, tables.size()> readable;
   std::array<std::vector<Range>, tables.size()> write_only;
   std::array<std::vector<Range>, tables.size()> unreadable;
@@ -98,7 +100,7 @@ std::vector<std::uint32_t> Planner::with_exponents(std::vector<std::uint32_t> po
 
 std::array<Intervals, tables.size()> Planner::together(Span<const std::uint32_t> points) const {
   std::array<Intervals, tables.size()> result;
-  if (scaled_.empty()) return result;
+  if (scaled_.empty() || !joins_exponents_) return result;
   std::vector<bool> is_in(map_.points.size());
   for (const std::uint32_t point : points) is_in[point] = true;
   std::array<std::vector<Range>, tables.size()> ranges;
@@ -113,7 +115,31 @@ std::array<Intervals, tables.size()> Planner::together(Span<const std::uint32_t>
   return result;
 }
 
+/// Returns the range of the point, up to the end of the exponent of its scale if that is read behind it and
+/// one request can read both.
+Range Planner::with_exponent_behind(std::uint32_t point, const std::vector<bool>& is_in) const {
+  const Range own = read_range(map_.points[point]);
+  const auto scaled = std::lower_bound(scaled_.begin(), scaled_.end(), point,
+                                       [](const ScaledPoint& a, std::uint32_t i) { return a.point < i; });
+  if (scaled == scaled_.end() || scaled->point != point || !is_in[scaled->exponent]) return own;
+  const Point& exponent = map_.points[scaled->exponent];
+  const Range both = hull(own, read_range(exponent));
+  const Table table = map_.points[point].table;
+  const bool is_possible = exponent.table == table && both.count() <= limit_of(map_, table);
+  return is_possible && both.start() == own.start() ? both : own;
+}
+
+/// Returns the rate at which the span is read. Exponents are read at the rates of others, too.
+double Planner::rate_of_span(const ReadSpan& span) const {
+  const auto own = std::find_if(span.points.begin(), span.points.end(),
+                                [this](std::uint32_t point) { return !is_exponent_[point]; });
+  return rate_of(map_, map_.points[own == span.points.end() ? span.points.front() : *own]);
+}
+
 std::vector<ReadSpan> Planner::plan(Span<const std::uint32_t> points, Span<const Unreadable> refused) const {
+  std::vector<bool> is_in(has_exponents() ? map_.points.size() : 0);
+  if (has_exponents())
+    for (const std::uint32_t point : points) is_in[point] = true;
   const Wishes wishes{refused, together(points)};
   std::vector<ReadSpan> spans;
   const auto end_last = [&](Cut cut) {
@@ -124,7 +150,8 @@ std::vector<ReadSpan> Planner::plan(Span<const std::uint32_t> points, Span<const
     const Range range = read_range(point);
     if (!spans.empty() && spans.back().table == point.table) {
       ReadSpan& last = spans.back();
-      const auto apart = why_apart(last, range, wishes);
+      const auto apart =
+          why_apart(last, range, has_exponents() ? with_exponent_behind(i, is_in) : range, wishes);
       if (!apart) {
         last.range = hull(last.range, range);
         last.points.push_back(i);
@@ -146,14 +173,15 @@ bool Planner::refuses(Table table, Range range, Span<const Unreadable> refused) 
   });
 }
 
-std::optional<Reason> Planner::why_apart(const ReadSpan& span, Range next, const Wishes& wishes) const {
+std::optional<Reason> Planner::why_apart(const ReadSpan& span, Range next, Range needed,
+                                         const Wishes& wishes) const {
   const Range both = hull(span.range, next);
   if (next.start() > span.range.end()) {
     const Range hole = Range::of(span.range.end(), next.start() - span.range.end());
     if (const auto reason = why_not_across(span.table, hole, wishes)) return reason;
   }
   if (refuses(span.table, both, wishes.refused)) return Reason::unreadable;
-  if (both.count() > limit_of(map_, span.table)) return Reason::limit;
+  if (hull(span.range, needed).count() > limit_of(map_, span.table)) return Reason::limit;
   return std::nullopt;
 }
 
@@ -178,8 +206,8 @@ Cut Planner::last_cut(const ReadSpan& span, const Wishes& wishes) const {
       });
   if (next == order_.end() || map_.points[*next].table != span.table) return {};
   const Range range = read_range(map_.points[*next]);
-  const bool same_rate = rate_of(map_, map_.points[*next]) == rate_of(map_, map_.points[span.points.front()]);
-  if (same_rate || why_apart(span, range, wishes)) return {};
+  const bool same_rate = rate_of(map_, map_.points[*next]) == rate_of_span(span);
+  if (same_rate || why_apart(span, range, range, wishes)) return {};
   return {Reason::other_rate, *next, static_cast<std::uint32_t>(range.start() - span.range.end())};
 }
 

@@ -50,8 +50,8 @@ std::optional<NotRead> why_not_read(const Map& map, const Point& point);
 /// Makes the read requests of a map, for all points or for some, few of them: points are joined while they
 /// touch or overlap, or, where unmapped addresses may be read, while fewer than the table's gap lie between
 /// them, and as long as the device's limit allows. Addresses of points that are read at another rate, or not
-/// wanted at the moment, do not count as unmapped. What lies between a point and the one that has the power
-/// of ten of its scale may be read, too, if both are among the points. A point is never split. What
+/// wanted at the moment, do not count as unmapped. What lies between a point and the exponent of its
+/// scale may be read, too, if both are among the points. A point is never split. What
 /// Map::unreadable names, and points that can only be written, are not read even between others.
 class Planner {
  public:
@@ -61,7 +61,11 @@ class Planner {
   /// Every point that can be read, the fastest rate first.
   const std::vector<RateGroup>& groups() const { return groups_; }
 
-  /// Adds the points that have the power of ten of the scales of `points`, so that they are read together.
+  bool has_exponents() const { return !scaled_.empty(); }
+  /// From now on, what lies between a point and the exponent of its scale is not read for that alone.
+  void keep_exponents_apart() { joins_exponents_ = false; }
+
+  /// Adds the points that hold the exponents of the scales of `points`, so that they are read together.
   /// Both are in the order of a RateGroup.
   std::vector<std::uint32_t> with_exponents(std::vector<std::uint32_t> points) const;
 
@@ -79,16 +83,22 @@ class Planner {
   /// What the requests of a plan must respect, besides the map.
   struct Wishes {
     Span<const Unreadable> refused;
-    std::array<Intervals, tables.size()> together;  ///< from a point to the one that has its power of ten
+    std::array<Intervals, tables.size()> together;  ///< from a point to the exponent of its scale
   };
   std::array<Intervals, tables.size()> together(Span<const std::uint32_t> points) const;
-  std::optional<Cut::Reason> why_apart(const ReadSpan& span, modbus::Range next, const Wishes& wishes) const;
+  modbus::Range with_exponent_behind(std::uint32_t point, const std::vector<bool>& is_in) const;
+  double rate_of_span(const ReadSpan& span) const;
+  /// `needed`: `next`, and what is to be read in the same request.
+  std::optional<Cut::Reason> why_apart(const ReadSpan& span, modbus::Range next, modbus::Range needed,
+                                       const Wishes& wishes) const;
   std::optional<Cut::Reason> why_not_across(Table table, modbus::Range hole, const Wishes& wishes) const;
   Cut last_cut(const ReadSpan& span, const Wishes& wishes) const;
 
   Map map_;
   std::vector<RateGroup> groups_;
+  bool joins_exponents_ = true;
   std::vector<ScaledPoint> scaled_;   ///< by point
+  std::vector<bool> is_exponent_;     ///< by point
   std::vector<std::uint32_t> order_;  ///< every point that can be read, by table and address
   std::array<Intervals, tables.size()> readable_;
   std::array<Intervals, tables.size()> write_only_;

@@ -213,11 +213,11 @@ void add_init(Program& program, Exit& exit) {
       command
           .add_option("--preset", arguments->starter.preset,
                       "The coupler's kind: wago_750, beckhoff_bk9000, moxa_e1200 or plc; on a "
-                      "serial line robotiq_2f or waveshare_io_8ch; or its maker's name, such as 750-352")
+                      "serial line robotiq_2f or waveshare_io_8ch; or its model number, such as 750-352")
           .type_name("PRESET");
   command
       .add_option("--addressing", arguments->starter.addressing,
-                  "What the addresses count: zero_based, or modicon for the numbers of manuals (40001 ...)")
+                  "How addresses are written: zero_based, or modicon as in most manuals (40001 ...)")
       .one_of({"zero_based", "modicon"});
   command.add_flag("--node", arguments->starter.node, "For a board with GPIO lines, served by coupler-node")
       .excludes(address)

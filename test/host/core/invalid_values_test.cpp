@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values that mean that a device has none, and scales whose power of ten is in a register of the device.
+// Values that mean that a device has none, and scales whose exponent is in a register of the device.
 #include <gmock/gmock.h>
 
 #include "coupler/host/core/value_text.hpp"
@@ -115,7 +115,7 @@ TEST_F(InvalidValuesTest, Bits_wide_values_halves_and_arrays_have_them_too) {
   EXPECT_EQ(value("real"), "-inf");
 }
 
-TEST_F(InvalidValuesTest, A_power_of_ten_is_read_in_the_same_request_across_what_is_between) {
+TEST_F(InvalidValuesTest, An_exponent_is_read_in_the_same_request_across_what_is_between) {
   read(
       "    power: {address: 0, type: INT, scale: {exponent_of: power_sf}}\n"
       "    power_sf: {address: 40, type: INT, invalid: 0x8000}\n");
@@ -130,7 +130,7 @@ TEST_F(InvalidValuesTest, A_power_of_ten_is_read_in_the_same_request_across_what
   EXPECT_THAT(sink->values["power"], ElementsAre(1234, 1234));
 }
 
-TEST_F(InvalidValuesTest, A_value_has_no_value_while_its_power_of_ten_has_none) {
+TEST_F(InvalidValuesTest, A_value_is_none_while_its_exponent_is_none) {
   read(
       "    power: {address: 0, type: INT, scale: {exponent_of: power_sf}, invalid: 0x8000}\n"
       "    power_sf: {address: 1, type: INT, invalid: 0x8000}\n");
@@ -138,10 +138,10 @@ TEST_F(InvalidValuesTest, A_value_has_no_value_while_its_power_of_ten_has_none) 
   set(1, 0x8000);
   run_for(milliseconds(50));
   EXPECT_EQ(quality("power").state, State::invalid);
-  EXPECT_EQ(quality("power").why, "power_sf, the power of ten of its scale, has no value");
+  EXPECT_EQ(quality("power").why, "power_sf, the exponent of its scale, has no value");
   set(1, 31);
   run_for(milliseconds(100));
-  EXPECT_EQ(quality("power").why, "power_sf is 31, which cannot be a power of ten");
+  EXPECT_EQ(quality("power").why, "power_sf is 31, which is out of range for an exponent (-30 to 30)");
   set(0, 0x8000);
   set(1, 1);
   run_for(milliseconds(100));
@@ -153,7 +153,7 @@ TEST_F(InvalidValuesTest, A_value_has_no_value_while_its_power_of_ten_has_none) 
 }
 
 /// The device gives only one register in a request.
-TEST_F(InvalidValuesTest, A_value_waits_for_a_power_of_ten_that_is_read_behind_it_in_the_same_cycle) {
+TEST_F(InvalidValuesTest, A_value_waits_for_an_exponent_that_is_read_behind_it_in_the_same_cycle) {
   read(
       "    power: {address: 0, type: INT, scale: {exponent_of: power_sf}}\n"
       "    power_sf: {address: 200, type: INT}\n");
@@ -172,7 +172,7 @@ TEST_F(InvalidValuesTest, A_value_waits_for_a_power_of_ten_that_is_read_behind_i
   EXPECT_THAT(sink->values["power"], ElementsAre(7, 8));
 }
 
-TEST_F(InvalidValuesTest, A_power_of_ten_that_the_device_refuses_takes_the_value_with_it) {
+TEST_F(InvalidValuesTest, An_exponent_that_the_device_refuses_takes_the_value_with_it) {
   read(
       "    power_sf: {address: 0, type: INT}\n"
       "    power: {address: 200, type: INT, scale: {exponent_of: power_sf}}\n"
@@ -209,7 +209,7 @@ TEST_F(InvalidValuesTest, What_waits_when_the_connection_ends_is_forgotten) {
   EXPECT_EQ(sink->values["power"].front(), 9);
 }
 
-TEST_F(InvalidValuesTest, A_power_of_ten_is_read_with_each_value_that_is_wanted_whatever_the_rates) {
+TEST_F(InvalidValuesTest, An_exponent_is_read_with_each_value_that_is_wanted_whatever_the_rates) {
   read(
       "    power: {address: 0, type: INT, rate: 50, scale: {exponent_of: power_sf}}\n"
       "    power_sf: {address: 1, type: INT, rate: 1}\n"
@@ -235,7 +235,7 @@ TEST_F(InvalidValuesTest, A_power_of_ten_is_read_with_each_value_that_is_wanted_
   EXPECT_EQ(device.requests.size(), 0U);
 }
 
-TEST_F(InvalidValuesTest, A_value_that_waited_in_vain_is_not_joined_with_the_power_of_another_cycle) {
+TEST_F(InvalidValuesTest, A_value_that_waited_in_vain_is_not_joined_with_the_exponent_of_another_cycle) {
   read(
       "    power: {address: 0, type: INT, scale: {exponent_of: power_sf}}\n"
       "    power_sf: {address: 200, type: INT}\n");
@@ -256,7 +256,7 @@ TEST_F(InvalidValuesTest, A_value_that_waited_in_vain_is_not_joined_with_the_pow
   EXPECT_EQ(value("power"), "111000");
 }
 
-TEST_F(InvalidValuesTest, A_value_is_back_in_the_cycle_in_which_its_power_of_ten_is) {
+TEST_F(InvalidValuesTest, A_value_is_back_in_the_cycle_in_which_its_exponent_is) {
   read(
       "    power: {address: 0, type: INT, scale: {exponent_of: power_sf}}\n"
       "    power_sf: {address: 200, type: INT, invalid: 0x8000}\n");
@@ -324,6 +324,74 @@ TEST_F(InvalidValuesTest, A_write_that_hides_a_value_is_no_news_about_one_that_i
   const std::uint32_t temp = index("temp");
   table->good({&temp, 1}, clock.now());
   EXPECT_EQ(table->revision(), revision);
+}
+
+TEST_F(InvalidValuesTest, A_value_is_good_in_each_cycle_in_which_its_exponent_behind_it_is_read) {
+  read(
+      "    power: {address: 0, type: INT, scale: {exponent_of: power_sf}}\n"
+      "    power_sf: {address: 200, type: INT}\n");
+  int asked = 0;
+  device.refuses = [&](const std::string& request) -> std::optional<modbus::Exception> {
+    if (request == "read input_registers 200+1" && ++asked % 2 == 1)
+      return modbus::Exception::server_device_busy;
+    return std::nullopt;
+  };
+  set(0, 5);
+  run_for(milliseconds(50));
+  EXPECT_EQ(quality("power").state, State::invalid);
+  EXPECT_EQ(sink->no_values["power"], 1);
+  run_for(milliseconds(100));
+  EXPECT_EQ(quality("power").state, State::good);
+  run_for(milliseconds(100));
+  EXPECT_EQ(quality("power").state, State::invalid);
+}
+
+TEST_F(InvalidValuesTest, After_a_lost_connection_an_exponent_is_read_with_its_values_again) {
+  read(
+      "    power_sf: {address: 0, type: INT, rate: 1}\n"
+      "    power: {address: 1, type: INT, rate: 10, scale: {exponent_of: power_sf}}\n"
+      "    other: {address: 300, type: INT}\n");
+  run_for(milliseconds(50));
+  device.next_errors.push_back(TransportFailure{"reset"});
+  run_for(std::chrono::seconds(5));
+  for (const char* request : {"read input_registers 0+1", "read input_registers 0+2"}) {
+    device.refuses = [&](const std::string& asked) -> std::optional<modbus::Exception> {
+      if (asked == request) device.next_errors.push_back(TransportFailure{"reset"});
+      return std::nullopt;
+    };
+    run_for(milliseconds(1500));
+    device.refuses = nullptr;
+    run_for(std::chrono::seconds(10));
+    device.requests.clear();
+    run_for(std::chrono::seconds(2));
+    EXPECT_EQ(device.count("read input_registers 1+1"), 0U) << request;
+    EXPECT_GT(device.count("read input_registers 0+2"), 15U) << request;
+  }
+}
+
+TEST_F(InvalidValuesTest, A_device_that_ignores_what_lies_between_is_read_in_two_requests) {
+  read(
+      "    power: {address: 0, type: INT, scale: {exponent_of: power_sf}}\n"
+      "    power_sf: {address: 40, type: INT}\n");
+  set(0, 5);
+  set(40, 1);
+  device.refuses = [&](const std::string& request) -> std::optional<modbus::Exception> {
+    if (request == "read input_registers 0+41") device.next_errors.push_back(Timeout{milliseconds(100)});
+    return std::nullopt;
+  };
+  run_for(std::chrono::seconds(30));
+  EXPECT_EQ(value("power"), "50");
+  EXPECT_EQ(quality("power").state, State::good);
+}
+
+TEST_F(InvalidValuesTest, An_infinity_is_no_fault_beyond_an_end_that_the_map_does_not_have) {
+  read("    real: {address: 0, type: REAL, order: ABCD, fault_above: 100}\n");
+  set(0, 0xFF80);
+  run_for(milliseconds(50));
+  EXPECT_EQ(quality("real").state, State::good);
+  set(0, 0x7F80);
+  run_for(milliseconds(100));
+  EXPECT_EQ(quality("real").state, State::fault);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ class Init(unittest.TestCase):
             self.assertEqual(self.coupler("init", "press", "--force", "--preset", model).returncode, 0)
             self.assertIn(f"preset: {preset} ", (self.folder / "press.yaml").read_text(encoding="utf-8"))
         (self.folder / "other.yaml").write_text("name: other\npreset: 750-352\nmapping: {coils: {a: 0}}\n")
-        self.assertIn("write 'wago_750', which is for it", self.coupler("check", "other.yaml").stderr)
+        self.assertIn("write 'wago_750', which covers this model", self.coupler("check", "other.yaml").stderr)
 
     def test_addresses_may_be_the_numbers_of_manuals(self):
         for kind in KINDS:

@@ -15,7 +15,7 @@ class Input(Point, Generic[T]):
     """A point that can be read."""
 
     def read(self) -> T:
-        """Asks the device for the value. Raises NoValue if what it gives is none."""
+        """Asks the device for the value. Raises NoValue if the device has none."""
         return self._client._read_point(self.spec)
 
 
@@ -107,11 +107,20 @@ class Client:
     def _read_point(self, spec: Spec) -> Any:
         with self._lock:
             self._connected()
-            words = self._read_words(spec)
-            value = spec.decode(words, self._power_of(spec, {}))
+            known = self._with_exponent(spec)
+            power = self._power_of(spec, known)
+        words = known[spec.name]
+        value = spec.decode(words, power)
         if value is None:
-            raise NoValue(f"{spec.name} has no value: the device says so")
+            raise NoValue(f"{spec.name} has no value: {spec.why_none(words)}")
         return value
+
+    def _with_exponent(self, spec: Spec) -> dict[str, list[int]]:
+        """The registers of the point, and if one request has both those of the exponent of its scale."""
+        for table, address, count, names in self._plan if spec.exponent_of else ():
+            if spec.name in names and spec.exponent_of in names:
+                return self._read_together(table, address, count, names)
+        return {spec.name: self._read_words(spec)}
 
     def _read_words(self, spec: Spec) -> list[int]:
         try:
@@ -120,7 +129,7 @@ class Client:
             raise ExceptionReply(error.code, f"{spec.name}: ") from None
 
     def _power_of(self, spec: Spec, known: dict[str, list[int]]) -> int | None:
-        """The power of ten of the scale; None if the device has none. `known`: registers that were read already."""
+        """The exponent of the scale; None if the device has none. `known`: registers that were read already."""
         if not spec.exponent_of:
             return 0
         exponent = self._points[spec.exponent_of].spec
@@ -169,7 +178,7 @@ class Client:
     def _verify(self, spec: Spec, words: list[int]) -> None:
         found = [word & spec.mask for word in self._read(spec.table, spec.read_from, len(words))]
         if found != words:
-            raise NotTaken(f"{spec.name}: {spec.decode(words)!r} was written and acknowledged, but {spec.decode(found)!r} "
+            raise NotTaken(f"{spec.name}: {spec.shown(words)!r} was written and acknowledged, but {spec.shown(found)!r} "
                            "reads back")
 
     def _read(self, table: str, address: int, count: int) -> list[int]:

@@ -91,7 +91,7 @@ class NotTaken(CouplerError):
 
 
 class NoValue(CouplerError):
-    """The device gives what the map calls invalid or a fault, or no power of ten for the scale."""
+    """The device gives what the map calls invalid or a fault, or no exponent for the scale."""
 
 
 class Refused(CouplerError, ValueError):
@@ -144,7 +144,7 @@ class Spec:
     encoding: str = ""
     gain: float = 1.0
     offset: float = 0.0
-    exponent_of: str = ""              # the point with the power of ten by which the gain is multiplied
+    exponent_of: str = ""              # the point with the exponent n: the gain is multiplied by 10^n
     invalid: tuple[tuple[int, int], ...] = ()  # raw values that are none: first, last
     fault_below: float = -math.inf     # raw values beyond are faults
     fault_above: float = math.inf
@@ -164,11 +164,15 @@ class Spec:
         return self.gain != 1 or self.offset != 0 or self.exponent_of != ""
 
     def decode(self, words: list[int], power: int | None = 0) -> Any:
-        """The value in `count * size` registers or bits; None if there is none. `power`: of ten, of the scale."""
+        """The value in `count * size` registers or bits; None if there is none. `power`: the exponent of the scale."""
         parts = [words[at:at + self.size] for at in range(0, self.count * self.size, self.size)]
         if power is None or any(self._is_invalid(part) or self._is_fault(part) for part in parts):
             return None
-        values = [self._decode_one(part, power) for part in parts]
+        return self.shown(words, power)
+
+    def shown(self, words: list[int], power: int = 0) -> Any:
+        """The same of any registers, whether they are a value or not."""
+        values = [self._decode_one(words[at:at + self.size], power) for at in range(0, self.count * self.size, self.size)]
         return values if self.count > 1 else values[0]
 
     def encode(self, value: Any) -> list[int]:
@@ -194,6 +198,14 @@ class Spec:
             data = bytes([words[0] >> 8 if self.mask == 0xFF00 else words[0] & 0xFF])
         raw = int.from_bytes(data, "big")  # of a BOOL that of its register
         return any(first <= raw <= last for first, last in self.invalid)
+
+    def why_none(self, words: list[int]) -> str:
+        parts = [words[at:at + self.size] for at in range(0, self.count * self.size, self.size)]
+        if any(self._is_invalid(part) for part in parts):
+            return "the device gives what the map calls invalid"
+        if any(self._is_fault(part) for part in parts):
+            return "the device gives a raw value beyond fault_below or fault_above"
+        return f"{self.exponent_of}, the exponent of its scale, has no value, or is out of range"
 
     def _is_fault(self, words: list[int]) -> bool:
         if math.isinf(self.fault_below) and math.isinf(self.fault_above):
@@ -315,7 +327,8 @@ class Spec:
     def _check_allowed(self, words: list[int]) -> None:
         """As what the registers would hold, so that 21.7 is not above `max: 21.7` of a REAL."""
         if self._is_invalid(words):
-            self.refuse(f"{self._raw(words)} is what the device gives for no value; send {self.allowed}")
+            value = self._raw(words) if self.type in _BITS_ONLY else self._raw(words) * self.gain + self.offset
+            self.refuse(f"{value:g}{self._unit()} means 'no value'; send {self.allowed}")
         if self.type in _BITS_ONLY:
             return
         raw = self._raw(words)

@@ -172,11 +172,11 @@ void check_start(const Reader& reader, const Point& point, const Context& contex
     if (given || !forbidden) return;
     const Entry* channel = reader.find(point.iio.present() ? "iio" : "pwm");
     context.problems.error(channel->key_at,
-                           fmt::format("{} is set to 0 {}, which {} do not allow", shown(point.name), when,
-                                       forbidden->why == Forbidden::invalid ? "'invalid'"
-                                       : point.values.empty()               ? "'min' and 'max'"
-                                                                            : "its 'values'"),
-                           fmt::format("add '{}' with a value that they allow", key));
+                           fmt::format("{} is set to 0 {}, which {} not allow", shown(point.name), when,
+                                       forbidden->why == Forbidden::invalid ? "'invalid' does"
+                                       : point.values.empty()               ? "'min' and 'max' do"
+                                                                            : "its 'values' do"),
+                           fmt::format("add '{}' with a value that is allowed", key));
   };
   check("initial", !point.initial.empty(), "at the start");
   check("safe", point.safe == Safe::hold || !point.safe_value.empty(), "when nobody is in command");

@@ -14,11 +14,11 @@
 namespace coupler::loader {
 namespace {
 
-/// Empty, or why the point's value can be no power of ten.
+/// Empty, or why the point's value cannot be an exponent.
 std::string why_no_exponent(const Point& point) {
   if (holds_bits(point.table) || !codec::is_scalable(point.format.type) || codec::is_float(point.format.type))
-    return fmt::format("is a {}", to_string(point.format.type));
-  if (point.scale.present()) return "has a scale itself";
+    return fmt::format("has the type {}", to_string(point.format.type));
+  if (point.scale.present()) return "has a scale of its own";
   if (point.count > 1) return "is an array";
   if (!is_readable(point)) return "can only be written";
   return {};
@@ -29,13 +29,16 @@ struct Wrong {
   std::string_view remedy;
 };
 
-/// Why the point's scale cannot have a power of ten.
+/// Why the point's scale cannot have an exponent.
 std::optional<Wrong> why_not_scaled(const Point& point) {
   if (point.count > 1) return Wrong{"is an array", "write one point for each value"};
   if (is_writable(point))
-    return Wrong{"can be written",
-                 "add 'access: read'; write the raw value by another point at the same address"};
-  if (has_hardware(point)) return Wrong{"has hardware of the node", "remove the one or the other"};
+    return Wrong{
+        "can be written",
+        "add 'access: read', and write the raw value through a second point at the same address with "
+        "'access: write'"};
+  if (has_hardware(point))
+    return Wrong{"belongs to hardware of the node", "remove the key of the hardware, or 'exponent_of'"};
   return std::nullopt;
 }
 
@@ -59,12 +62,11 @@ void check_exponents(const DraftPoints& points, const Context& context) {
       if (names.empty())
         for (const DraftPoint& each : points)
           if (why_no_exponent(each.point).empty()) names.push_back(each.point.name);
-      context.problems.error(
-          at, fmt::format("no point is called {}", shown(name)),
-          nearest_or(name, names, "write the name of the point that has the power of ten"));
+      context.problems.error(at, fmt::format("no point is called {}", shown(name)),
+                             nearest_or(name, names, "write the name of the point that holds the exponent"));
     } else if (const std::string why = why_no_exponent(*found->second); !why.empty()) {
-      context.problems.error(at, fmt::format("{} {}, so it has no power of ten", shown(name), why),
-                             "name a point that is a single whole number without a scale, as INT");
+      context.problems.error(at, fmt::format("{} {}, so it cannot be an exponent", shown(name), why),
+                             "name a point that is one integer without 'scale', such as an INT");
     }
   }
 }

@@ -26,13 +26,14 @@ std::string_view example_of(Type type) {
   return codec::width(type) == 8 ? "0xFF" : "0x8000";
 }
 
+bool is_hexadecimal(std::string_view text) { return text.substr(0, 2) == "0x" || text.substr(0, 2) == "0X"; }
+
 /// The raw value that a number or the bits in hexadecimal stand for. An integer may also be written as the
 /// unsigned number with the same bits.
 template <class T>
 std::optional<std::uint64_t> raw_of(std::string_view text) {
   using Raw = typename codec::detail::Unsigned<sizeof(T)>::type;
-  const bool is_hexadecimal = text.substr(0, 2) == "0x" || text.substr(0, 2) == "0X";
-  if (std::is_integral_v<T> || is_hexadecimal)
+  if (std::is_integral_v<T> || is_hexadecimal(text))
     if (const auto bits = parse_unsigned(text))
       return *bits <= std::numeric_limits<Raw>::max() ? bits : std::nullopt;
   if constexpr (std::is_floating_point_v<T>) {
@@ -90,34 +91,36 @@ class InvalidReader {
     const auto first = raw_value(pair.children[0]);
     const auto last = raw_value(pair.children[1]);
     if (!first || !last) return;
-    const std::uint64_t sign = (mask_of_type() >> 1U) + 1;
-    const bool is_signed = pair.children[0].text[0] == '-';
-    const bool is_float = codec::is_float(point_.format.type);
-    if (is_float && is_signed && *first >= *last && *last >= sign)
-      ranges.push_back({*last, *first});  // the greater the bits of a negative float, the smaller the number
-    else if (is_signed && *last < sign && !is_float)
+    const bool has_sign = is_negative(pair.children[0]) || is_negative(pair.children[1]);
+    const bool has_bits = is_hexadecimal(pair.children[0].text) || is_hexadecimal(pair.children[1].text);
+    const bool ascends = has_sign ? parse_number(pair.children[0].text) <= parse_number(pair.children[1].text)
+                                  : *first <= *last;
+    const auto wrong = [&](std::string_view what, std::string_view remedy) {
+      context_.problems.error(pair.at,
+                              fmt::format("'invalid' has the range {} to {}, {}", pair.children[0].text,
+                                          pair.children[1].text, what),
+                              std::string(remedy));
+    };
+    if (has_sign && has_bits)
+      return wrong("of a number and of bits", "write two numbers, or two bit patterns");
+    if (!ascends) return wrong("whose ends are in the wrong order", "write the smaller number first");
+    if (*first <= *last) return ranges.push_back({*first, *last});
+    if (!codec::is_float(point_.format.type))
       ranges.insert(ranges.end(), {{*first, mask_of_type()}, {0, *last}});
-    else if (*first <= *last && !(is_float && is_signed))
-      ranges.push_back({*first, *last});
+    else if (is_negative(pair.children[1]))
+      ranges.push_back({*last, *first});  // the greater the bits of a negative float, the smaller the number
     else
-      context_.problems.error(
-          pair.at,
-          fmt::format("'invalid' has a range from {} to {}, which does not ascend", pair.children[0].text,
-                      pair.children[1].text),
-          is_float && is_signed
-              ? "write one range of negative and one of positive numbers"
-              : "write both ends as numbers, or both as bits such as 0xFFF0, the smaller one first");
+      wrong("which crosses 0", "write two ranges, one for negative and one for positive numbers");
   }
 
+  static bool is_negative(const Entry& end) { return end.text[0] == '-'; }
   static bool is_nan(std::string_view text) {
     return text == "nan" || text == "NaN" || text == ".nan" || text == ".NaN";
   }
 
   /// All bits of the type; a BOOL has those of its register.
-  std::uint64_t mask_of_type() const {
-    const unsigned width = point_.format.type == Type::BOOL ? 16 : codec::width(point_.format.type);
-    return ~std::uint64_t{0} >> (64 - width);
-  }
+  std::uint64_t mask_of_type() const { return ~std::uint64_t{0} >> (64 - bits()); }
+  unsigned bits() const { return point_.format.type == Type::BOOL ? 16 : codec::width(point_.format.type); }
 
   std::optional<std::uint64_t> raw_value(const Entry& entry) const {
     std::optional<std::uint64_t> raw;
@@ -129,8 +132,9 @@ class InvalidReader {
     if (!raw)
       context_.problems.error(
           entry.at,
-          fmt::format("'invalid' of type {} must be a raw value such as {}, not {}",
-                      to_string(point_.format.type), example_of(point_.format.type), shown(entry)),
+          fmt::format("'invalid' must be a raw value of the {} bits of {}, such as {}, not {}", bits(),
+                      point_.format.type == Type::BOOL ? "the register" : to_string(point_.format.type),
+                      example_of(point_.format.type), shown(entry)),
           std::string(form));
     return raw;
   }
@@ -146,7 +150,7 @@ void read_invalid(const Reader& reader, Point& point, const Context& context) {
   if (entry == nullptr) return;
   if (point.format.type == Type::STRING) {
     context.problems.error(entry->key_at, "'invalid' does not apply to STRING",
-                           "remove it; a text that the device does not have is empty");
+                           "remove it; a device without a text sends an empty one");
     return;
   }
   InvalidReader values(point, context);
@@ -166,20 +170,18 @@ void read_faults(const Reader& reader, Point& point, const Context& context) {
     return;
   }
   const auto [least, most] = codec::published_range(point.format.type, {});
-  const auto check = [&](std::string_view key, double bound, bool has_effect) {
-    if (reader.has(key) && !has_effect)
-      context.problems.error(
-          reader.find(key)->at,
-          fmt::format(
-              "'{}' is {:.15g}, but raw values of {} are from {:.15g} to {:.15g}, so it has no effect", key,
-              bound, to_string(point.format.type), least, most),
-          "write a raw value between them, as it is in the register before 'scale'");
+  const auto check = [&](std::string_view key, double bound, bool is_in_range) {
+    if (reader.has(key) && !is_in_range)
+      context.problems.error(reader.find(key)->at,
+                             fmt::format("'{}' is {:.15g}, but raw values of {} are {:.15g} to {:.15g}", key,
+                                         bound, to_string(point.format.type), least, most),
+                             "write a raw value between them, as the register holds it before 'scale'");
   };
   check("fault_below", faults.below, faults.below > least && faults.below <= most);
   check("fault_above", faults.above, faults.above >= least && faults.above < most);
   if (faults.below > faults.above)
     context.problems.error(reader.find("fault_below")->at, "'fault_below' is above 'fault_above'",
-                           "exchange the two, or change one");
+                           "swap the two, or change one");
   point.faults = faults;
 }
 

@@ -51,7 +51,7 @@ void read_format(const Reader& reader, const Entry& point, codec::Order order, c
 /// `type:`, by any of its names; must be given.
 void read_type(const Reader& reader, codec::Type& type, const Context& context);
 
-/// `scale:`, a number or a map of gain, offset and the point that has its power of ten.
+/// `scale:`, a number or a map of gain, offset and the point that holds its exponent.
 void read_scale(const Reader& reader, Point& point, const Context& context);
 
 /// `invalid:`, the raw values of a point of registers that mean that it has no value.

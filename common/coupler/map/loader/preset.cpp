@@ -44,8 +44,26 @@ void check_area(const Preset& preset, const DraftPoint& draft, const Context& co
                            "see its manual, or remove 'preset'");
 }
 
+std::vector<std::string> texts_of(const Entry& list) {
+  std::vector<std::string> texts;
+  for (const Entry& element : list.children) texts.push_back(element.text);
+  return texts;
+}
+
 std::string no_element(const PresetFile& file, Position at, std::string_view of) {
   return fmt::format("{}: line {} is not an element of '{}'", file.name, at.line, of);
+}
+
+/// Adds an element of `areas` or `read_back`. Returns false if it is none.
+bool add_element(const Entry& element, std::string_view list, Preset& preset) {
+  const auto area = area_of(element);
+  const auto offset = word(element, "offset");
+  if (!area || (list != "areas" && !(list == "read_back" && offset))) return false;
+  if (offset)
+    preset.read_back.push_back({*area, *offset});
+  else
+    preset.areas.push_back(*area);
+  return true;
 }
 
 }  // namespace
@@ -70,19 +88,12 @@ tl::expected<Preset, std::string> parse_preset(const PresetFile& file) {
       continue;
     }
     if (entry.key == "models") {
-      for (const Entry& model : entry.children) preset.models.push_back(model.text);
+      preset.models = texts_of(entry);
       continue;
     }
-    for (const Entry& element : entry.children) {
-      const auto area = area_of(element);
-      const auto offset = word(element, "offset");
-      if (!area || (entry.key != "areas" && !(entry.key == "read_back" && offset)))
+    for (const Entry& element : entry.children)
+      if (!add_element(element, entry.key, preset))
         return tl::make_unexpected(no_element(file, element.at, entry.key));
-      if (offset)
-        preset.read_back.push_back({*area, *offset});
-      else
-        preset.areas.push_back(*area);
-    }
   }
   return preset;
 }
@@ -108,7 +119,7 @@ std::optional<Preset> read_preset(const Entry& root, const Context& context) {
   const std::string_view of_model = preset_of_model(entry->text);
   context.problems.error(entry->at, fmt::format("no preset is called {}", shown(*entry)),
                          of_model.empty() ? suggestion(entry->text, names)
-                                          : fmt::format("write '{}', which is for it", of_model));
+                                          : fmt::format("write '{}', which covers this model", of_model));
   return std::nullopt;
 }
 

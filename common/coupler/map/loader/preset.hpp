@@ -59,7 +59,7 @@ struct Preset {
   };
 
   std::string_view name;
-  std::vector<std::string> models;  ///< parts of the makers' names of couplers of this kind
+  std::vector<std::string> models;  ///< parts of the model numbers of this kind
   Entry map;                        ///< keys that hold unless the map has them
   std::vector<Area> areas;
   std::vector<ReadBack> read_back;
@@ -69,7 +69,7 @@ struct Preset {
 /// The error says what is wrong with the file.
 tl::expected<Preset, std::string> parse_preset(const PresetFile& file);
 
-/// Returns the name of the preset for a maker's name such as "750-352"; empty if there is none.
+/// Returns the name of the preset for a model number such as "750-352"; empty if there is none.
 std::string_view preset_of_model(std::string_view model);
 
 /// `preset:` of the map; nothing if it has none, or no known one.

@@ -69,40 +69,77 @@ void report(const DraftPoint& draft, const DraftPoint& other, const Context& con
     context.problems.error(draft.address_at, std::move(what), "give one of the two another address", notes);
 }
 
-/// The owners of the bits of each address so far. Writers are listed a second time on their own, because a
-/// reader may have taken their bits before them. In either list the claims on one address share no bits, so
-/// there are at most sixteen, and the whole check stays linear in the number of registers.
+/// A status word, and a bit or byte of it that has a name of its own.
+bool is_word_and_part(const Point& word, const Point& part) {
+  const codec::Type type = word.format.type;
+  return !is_partial(word) && is_partial(part) && type != codec::Type::STRING && !codec::is_float(type);
+}
+
+bool is_meant(const Point& a, const Point& b) {
+  const bool are_read = !is_writable(a) && !is_writable(b);
+  return are_read && (is_word_and_part(a, b) || is_word_and_part(b, a));
+}
+
+/// The owners of the bits of each address so far: of whole registers, and of parts of them. Writers are
+/// listed a second time on their own, because a reader may have taken their bits before them. In each list
+/// the claims on one address share no bits, so there are at most sixteen, and the whole check stays linear in
+/// the number of registers.
 class Claims {
  public:
   /// Takes the bits that are free. Returns an owner of the others: one with which sharing is an error, if
-  /// there is such an owner.
+  /// there is such an owner. An owner with which it is meant is not returned.
   const DraftPoint* take(const DraftPoint& draft) {
-    const DraftPoint* found = take(draft, everyone_);
-    const DraftPoint* writer = is_writable(draft.point) ? take(draft, writers_) : nullptr;
-    return writer != nullptr && tolerable(draft.point, found->point) ? writer : found;
+    const bool is_part = is_partial(draft.point);
+    const DraftPoint* found = take(draft, is_part ? parts_ : wholes_);
+    found = worse(draft, found, look(draft, is_part ? wholes_ : parts_));
+    return worse(draft, found, is_writable(draft.point) ? take(draft, writers_) : nullptr);
   }
 
  private:
   using ByAddress = std::unordered_map<std::uint32_t, std::vector<Claim>>;
+
+  static const DraftPoint* worse(const DraftPoint& draft, const DraftPoint* a, const DraftPoint* b) {
+    if (a == nullptr || b == nullptr) return a == nullptr ? b : a;
+    return tolerable(draft.point, a->point) ? b : a;
+  }
+
+  static std::uint32_t key(Table table, std::uint32_t address) {
+    return static_cast<std::uint32_t>(index(table)) << 16U | address;
+  }
 
   static const DraftPoint* take(const DraftPoint& draft, ByAddress& taken_so_far) {
     const DraftPoint* found = nullptr;
     const std::uint16_t mask = codec::mask(draft.point.format);
     const modbus::Range taken = range(draft.point);
     for (std::uint32_t address = taken.start(); address < taken.end(); ++address) {
-      auto& claims = taken_so_far[static_cast<std::uint32_t>(index(draft.point.table)) << 16U | address];
+      auto& claims = taken_so_far[key(draft.point.table, address)];
       std::uint16_t free = mask;
       for (Claim& claim : claims) {
         if ((claim.mask & mask) == 0) continue;
         free = static_cast<std::uint16_t>(free & ~claim.mask);
-        if (found == nullptr || tolerable(draft.point, found->point)) found = claim.owner;
+        found = worse(draft, found, claim.owner);
       }
       if (free != 0) claims.push_back({free, &draft});
     }
     return found;
   }
 
-  ByAddress everyone_;
+  static const DraftPoint* look(const DraftPoint& draft, const ByAddress& taken_so_far) {
+    const DraftPoint* found = nullptr;
+    const std::uint16_t mask = codec::mask(draft.point.format);
+    const modbus::Range taken = range(draft.point);
+    for (std::uint32_t address = taken.start(); address < taken.end(); ++address) {
+      const auto claims = taken_so_far.find(key(draft.point.table, address));
+      if (claims == taken_so_far.end()) continue;
+      for (const Claim& claim : claims->second)
+        if ((claim.mask & mask) != 0 && !is_meant(draft.point, claim.owner->point))
+          found = worse(draft, found, claim.owner);
+    }
+    return found;
+  }
+
+  ByAddress wholes_;
+  ByAddress parts_;
   ByAddress writers_;
 };
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "coupler/codec/bit_string.hpp"
@@ -210,8 +212,13 @@ std::optional<std::pair<double, double>> ends(const Reader& scale, std::string_v
     first = bare_number(entry->children[0]);
     last = bare_number(entry->children[1]);
   }
-  if (first && last && *first != *last) return std::pair(*first, *last);
-  scale.wrong(key, "a list of two different numbers");
+  if (!first || !last) {
+    scale.wrong(key, "a list of two numbers");
+  } else if (*first == *last) {
+    scale.refuse(key, fmt::format("'{}' has the same number twice", key), "write two different numbers");
+  } else {
+    return std::pair(*first, *last);
+  }
   return std::nullopt;
 }
 
@@ -224,14 +231,20 @@ void read_ends(const Reader& reader, codec::Scale& scale) {
                            "write both, as in 'scale: {raw: [4000, 20000], value: [0, 10]}'");
     for (const char* factor : {"gain", "offset"})
       if (reader.has(factor))
-        return reader.refuse(factor, fmt::format("'raw' and 'value' say what '{}' says", factor),
-                             "remove the one or the other");
+        return reader.refuse(
+            factor, fmt::format("'{}' does not go with 'raw' and 'value', which determine it", factor),
+            fmt::format("remove '{}', or 'raw' and 'value'", factor));
   }
   const auto raw = ends(reader, "raw");
   const auto value = ends(reader, "value");
   if (!raw || !value) return;
-  scale.gain = (value->second - value->first) / (raw->second - raw->first);
-  scale.offset = value->first - raw->first * scale.gain;
+  const double gain = (value->second - value->first) / (raw->second - raw->first);
+  const double offset = value->first - raw->first * gain;
+  if (gain == 0 || !std::isfinite(gain) || !std::isfinite(offset))
+    return reader.refuse("value", "the line through 'raw' and 'value' is too steep or too flat",
+                         "write other numbers");
+  scale.gain = gain;
+  scale.offset = offset;
 }
 
 }  // namespace

@@ -119,8 +119,11 @@ struct Session::Engine {
 
 std::string to_string(const NoValue& why) {
   if (why.quality == Quality::never_read) return "was not read yet";
-  if (!why.why_unusable.empty()) return "has no value: " + why.why_unusable;
-  if (why.quality == Quality::offline) return "was not read yet: the device does not answer";
+  if (why.quality == Quality::offline)
+    return fmt::format("{}: the device does not answer",
+                       why.why_unusable.empty() ? "was not read yet" : "has no value");
+  if (!why.why_unusable.empty() && !host::PointQuality::is_refused(why.quality))
+    return "has no value: " + why.why_unusable;
   return fmt::format("cannot be read: {}",
                      why.exception ? host::to_string(host::Error(host::ExceptionReply{*why.exception}))
                                    : std::string(host::to_string(why.quality)));

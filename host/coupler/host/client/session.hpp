@@ -42,7 +42,7 @@ struct Options {
 
 /// Why there is no value.
 struct NoValue {
-  Quality quality = Quality::never_read;         ///< any but good
+  Quality quality = Quality::never_read;         ///< of the last reading
   std::optional<modbus::Exception> exception{};  ///< the last one
   std::string why_unusable{};  ///< why what was read last is no value; empty if nothing was read
 };

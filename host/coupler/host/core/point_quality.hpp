@@ -22,12 +22,12 @@ struct PointQuality {
     rejected,    ///< the device does not have it, or it is set aside
     offline,     ///< the device does not answer
     not_wanted,  ///< not read, because nobody listens to it
-    invalid,     ///< what was read is no value: see Point::invalid, and the power of ten of a scale
+    invalid,     ///< what was read is no value: see Point::invalid and Scale::exponent_of
     fault        ///< what was read says that something is broken: see Point::faults
   };
   State state = State::never_read;
   Time stale_from = Time::max();    ///< the time at which a good value becomes stale if nothing new comes
-  std::optional<Time> last_good{};  ///< the time of the last value
+  std::optional<Time> last_good{};  ///< the time of the last reading, usable or not
   std::optional<modbus::Exception> last_exception{};  ///< the last exception, however long ago
   std::string why{};  ///< what came instead of a reply, or why what came is no value; empty otherwise
   std::optional<WriteResult::Outcome> last_write{};  ///< that of the last write that was not superseded

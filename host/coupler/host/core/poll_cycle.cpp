@@ -135,6 +135,8 @@ void PollCycle::ask_again(Span<const std::uint32_t> points, bool soon) {
       group->soon |= soon;
     }
   }
+  if (planner_.has_exponents())  // which several groups may read
+    for (Group& group : groups_) group.stale = true;
 }
 
 bool PollCycle::answered(std::optional<modbus::Exception> exception, Time now) {
@@ -200,9 +202,12 @@ std::vector<std::uint32_t> PollCycle::part(bool keeps_alone, Time now) {
     rejected_ranges_.push_back(whole);
   const Parts parts = parts_of_current();
   std::vector<std::uint32_t> alone = parts.points_alone();
-  if (!keeps_alone)
+  if (!keeps_alone) {
+    const auto is_known = [this](std::uint32_t point) { return given_up_[point]; };  // by another group
+    alone.erase(std::remove_if(alone.begin(), alone.end(), is_known), alone.end());
     for (const std::uint32_t point : alone) given_up_[point] = true;
-  if (alone.empty()) group.parted.push_back({whole, parts.hole});
+  }
+  if (parts.alone.empty()) group.parted.push_back({whole, parts.hole});
   replace_current(parts, keeps_alone);
   done(now);
   return alone;
@@ -233,6 +238,8 @@ std::vector<std::uint32_t> PollCycle::set_aside(Time now) {
 }
 
 void PollCycle::ended_connection() {
+  if (current().points.size() > 1)
+    planner_.keep_exponents_apart();  // the device may ignore what lies between
   aside_.suspect(current());
   deferred_.push_back(current());
   std::size_t asked = 0;

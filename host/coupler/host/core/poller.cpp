@@ -67,6 +67,7 @@ void Poller::set_aside(const Error& error) {
     const std::string why = fmt::format("{} to the request for it ({})", to_string(error), asked);
     values_.set_aside({&point, 1}, why);
     sink_.on_no_values({&point, 1}, clock_.now());
+    tell_late();
     sink_.on_report(
         Level::warning,
         fmt::format("{} cannot be read: {}, though other requests are answered; it is tried again "
@@ -87,6 +88,11 @@ void Poller::publish(const ReadSpan& span) {
   else
     sink_.on_values(fresh.points);
   writer_.shown(fresh.points);
+}
+
+/// Tells the sink about points that became invalid because the exponents of their scales could not be read.
+void Poller::tell_late() {
+  if (!values_.late().empty()) sink_.on_no_values(values_.late(), clock_.now());
 }
 
 /// Tells the sink which of the points that were read have a value to be used.
@@ -126,6 +132,7 @@ void Poller::on_exception(modbus::Exception code) {
       statistics_.rejected();
       values_.rejected(span.points, code);
       sink_.on_no_values(span.points, clock_.now());
+      tell_late();
       if (cycle_.only_looks()) {
         cycle_.answered(code, clock_.now());
         return;
@@ -140,6 +147,7 @@ void Poller::on_exception(modbus::Exception code) {
       if (cycle_.only_looks() && ask_in_parts(code)) return;
       values_.exception(span.points, code);
       sink_.on_no_values(span.points, clock_.now());
+      tell_late();
       if (cycle_.answered(code, clock_.now()))
         sink_.on_report(Level::warning, fmt::format("{} cannot be read now: {}", describe(span), why));
   }
@@ -153,6 +161,7 @@ bool Poller::ask_in_parts(modbus::Exception code) {
   if (!alone) return false;
   values_.exception(*alone, code);
   sink_.on_no_values(*alone, clock_.now());
+  tell_late();
   return true;
 }
 
@@ -163,6 +172,7 @@ void Poller::on_rejection(modbus::Exception code, std::string_view what, std::st
   for (const std::uint32_t point : cycle_.rejected(clock_.now())) {
     values_.rejected({&point, 1}, code);
     sink_.on_no_values({&point, 1}, clock_.now());
+    tell_late();
     sink_.on_report(Level::warning, fmt::format("{} {}: {}; {}", map_.points[point].name, what, why, until));
   }
 }

@@ -62,6 +62,7 @@ class Poller {
 
  private:
   void publish(const ReadSpan& span);
+  void tell_late();
   void tell_apart(Span<const std::uint32_t> points);
   const ReadSpan& without_hidden(const ReadSpan& span);
   void on_exception(modbus::Exception code);

@@ -21,7 +21,7 @@ using State = PointQuality::State;
 
 namespace {
 
-/// Returns the power of ten that the point's registers have; nullopt if it is out of range.
+/// Returns the exponent in the registers of the point; nullopt if it is out of range.
 std::optional<std::int16_t> exponent_in(const std::uint16_t* registers, const Point& point) {
   return codec::with_number(point.format.type, [&](auto zero) -> std::optional<std::int16_t> {
     const auto number = static_cast<double>(codec::take<decltype(zero)>(point.format, registers));
@@ -73,6 +73,7 @@ void ValueTable::begin() {
 void ValueTable::store(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp, Time good_at) {
   const std::lock_guard lock(mutex_);
   bool news = false;
+  late_.clear();
   ++stores_;
   for (const std::uint32_t point : span.points) {
     Entry& entry = entries_[point];
@@ -91,7 +92,6 @@ void ValueTable::store(const ReadSpan& span, Span<const std::uint16_t> registers
 bool ValueTable::store_scaled(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp,
                               Time good_at) {
   bool news = false;
-  late_.clear();
   for (const std::uint32_t point : span.points) {
     Entry& entry = entries_[point];
     if (!entry.scaling) continue;
@@ -122,6 +122,7 @@ bool ValueTable::take(Entry& entry, const Taken& taken) {
   const Point& point = map_.points[static_cast<std::size_t>(&entry - entries_.data())];
   const State before = state_of(entry, taken.good_at);
   const bool was_usable = entry.read_as == State::good;
+  const bool lacked_exponent = entry.lacks_exponent;
   entry.differs = entry.number == 0;
   for (std::size_t i = 0; i < entry.count; ++i)
     keep(entry, i, static_cast<std::uint16_t>(taken.registers[i] & entry.mask));
@@ -138,11 +139,10 @@ bool ValueTable::take(Entry& entry, const Taken& taken) {
       entry.read_as = State::invalid;
   }
   if (entry.differs) ++entry.number;
-  const bool has_another_reason = entry.differs && entry.read_as != State::good;
   entry.differs |= entry.read_as == State::good && !was_usable;
   entry.stamp = taken.stamp;
   mark_good(entry, taken.good_at);
-  return has_another_reason || state_of(entry, taken.good_at) != before;
+  return lacked_exponent != entry.lacks_exponent || state_of(entry, taken.good_at) != before;
 }
 
 void ValueTable::keep(Entry& entry, std::size_t i, std::uint16_t now) {
@@ -150,21 +150,31 @@ void ValueTable::keep(Entry& entry, std::size_t i, std::uint16_t now) {
   entry.differs |= before != now;
 }
 
-/// Returns whether the device is likely to answer the request for the point in this cycle.
-bool ValueTable::is_expected(const Entry& entry) {
-  return !entry.rejected && !entry.failing && entry.why.empty();
-}
+/// Returns whether the point is asked for in each cycle.
+bool ValueTable::is_expected(const Entry& entry) { return !entry.rejected && entry.why.empty(); }
 
 void ValueTable::set_waits(Scaling& scaling, bool waits) {
   if (std::exchange(scaling.waits, waits) != waits) waiting_ += waits ? 1 : std::size_t(-1);
 }
 
-/// Drops what waits for one of the points, or belongs to one of them: they have not been read in this cycle.
-void ValueTable::stop_waiting(Span<const std::uint32_t> points) {
+/// Ends the waiting of and for points that could not be read: the registers of the points themselves are
+/// dropped, and points whose exponent is one of them become invalid.
+void ValueTable::settle(Span<const std::uint32_t> points) {
+  late_.clear();
   if (waiting_ == 0) return;
-  for (Scaling& scaling : scaling_)
-    for (const std::uint32_t point : points)
-      if (point == scaling.point || point == scaling.exponent) set_waits(scaling, false);
+  const auto is_one = [&](std::uint32_t point) {
+    return std::find(points.begin(), points.end(), point) != points.end();
+  };
+  for (Scaling& scaling : scaling_) {
+    if (!scaling.waits) continue;
+    if (is_one(scaling.point)) {
+      set_waits(scaling, false);
+    } else if (is_one(scaling.exponent)) {
+      set_waits(scaling, false);
+      take(entries_[scaling.point], {scaling.registers.data(), scaling.stamp, scaling.good_at});
+      late_.push_back(scaling.point);
+    }
+  }
 }
 
 std::optional<std::int16_t> ValueTable::exponent_of(const Scaling& scaling, Time now) const {
@@ -201,7 +211,7 @@ void ValueTable::exception(Span<const std::uint32_t> points, modbus::Exception c
     entries_[point].failing = true;
     entries_[point].why.clear();
   }
-  stop_waiting(points);
+  settle(points);
   ++revision_;
 }
 
@@ -223,7 +233,7 @@ void ValueTable::rejected(Span<const std::uint32_t> points, modbus::Exception co
 void ValueTable::set_aside(Span<const std::uint32_t> points, const std::string& why) {
   const std::lock_guard lock(mutex_);
   for (const std::uint32_t point : points) entries_[point].why = why;
-  stop_waiting(points);
+  settle(points);
   ++revision_;
 }
 
@@ -316,9 +326,10 @@ std::string ValueTable::why_unusable(const Entry& entry, Time now) const {
   const std::uint32_t power = scaling_[*entry.scaling].exponent;
   const Entry& exponent = entries_[power];
   if (read_state(exponent, now) == State::good)
-    return fmt::format("{} is {}, which cannot be a power of ten", point.scale.exponent_of,
-                       format_value(&registers_[exponent.first], map_.points[power]));
-  return fmt::format("{}, the power of ten of its scale, has no value", point.scale.exponent_of);
+    return fmt::format("{} is {}, which is out of range for an exponent ({} to {})", point.scale.exponent_of,
+                       format_value(&registers_[exponent.first], map_.points[power]), -most_exponent,
+                       most_exponent);
+  return fmt::format("{}, the exponent of its scale, has no value", point.scale.exponent_of);
 }
 
 std::vector<PointQuality> ValueTable::qualities(Time now) const {

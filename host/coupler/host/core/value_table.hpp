@@ -54,11 +54,11 @@ class ValueTable {
   /// register `span.range.start() + i`, or that bit as 0 or 1.
   void store(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp, Time good_at);
   /// Returns whether the registers of the point that were read last are not stored yet, because they wait for
-  /// the power of ten of their scale, which another request of the same cycle reads.
+  /// the exponent of their scale, which another request of the same cycle reads.
   bool waits(std::uint32_t point) const {
     return entries_[point].scaling && scaling_[*entries_[point].scaling].waits;
   }
-  /// The points that waited until the last store().
+  /// The waiting points that the last call of store(), exception(), rejected() or set_aside() has settled.
   Span<const std::uint32_t> late() const { return late_; }
   /// Notes that the points can be read. Their values are not stored, because a write will replace them.
   void good(Span<const std::uint32_t> points, Time at);
@@ -78,7 +78,8 @@ class ValueTable {
 
   // The device's thread may call these functions in Sink::on_values().
 
-  /// Returns whether the map says of any point when what is read is not to be used.
+  /// Returns whether any point has `invalid`, a fault limit or an exponent, so that what is read may be
+  /// unusable.
   bool can_be_unusable() const { return can_be_unusable_; }
   /// Returns good, or, if what was read last is not to be used, invalid or fault.
   PointQuality::State last_read(std::uint32_t point) const { return entries_[point].read_as; }
@@ -119,9 +120,9 @@ class ValueTable {
     std::uint64_t number = 0;  ///< see Value::number; 0 if the point has no value
     bool differs = false;
     PointQuality::State read_as = PointQuality::State::good;  ///< see last_read()
-    bool lacks_exponent = false;                              ///< then it is invalid for that
-    std::uint64_t stored = 0;                                 ///< the number of the last store() of its span
-    std::optional<std::uint32_t> scaling{};  ///< the index in scaling_, if its scale has a power of ten
+    bool lacks_exponent = false;             ///< it is invalid because its scale has no exponent
+    std::uint64_t stored = 0;                ///< the number of the last store() of its span
+    std::optional<std::uint32_t> scaling{};  ///< the index in scaling_, if its scale has an exponent
     Stamp stamp{};
     Duration stale_after{};  ///< an older value is stale
     std::optional<Time> last_good{};
@@ -133,12 +134,12 @@ class ValueTable {
     bool rejected = false;
     bool told = false;
   };
-  /// A point whose scale has a power of ten. If that is read later in the cycle, by another request, the
+  /// A point whose scale has an exponent. If that is read later in the cycle, by another request, the
   /// registers of the point wait for it here.
   struct Scaling {
     std::uint32_t point;
-    std::uint32_t exponent;  ///< the point that has the power of ten
-    bool comes_later;        ///< it stands behind the point
+    std::uint32_t exponent;  ///< the point that holds it
+    bool comes_later;        ///< it is read after the point
     bool waits = false;
     std::array<std::uint16_t, 4> registers{};  ///< no number has more
     Stamp stamp{};
@@ -154,7 +155,7 @@ class ValueTable {
   void keep(Entry& entry, std::size_t i, std::uint16_t now);
   static bool is_expected(const Entry& entry);
   void set_waits(Scaling& scaling, bool waits);
-  void stop_waiting(Span<const std::uint32_t> points);
+  void settle(Span<const std::uint32_t> points);
   std::optional<std::int16_t> exponent_of(const Scaling& scaling, Time now) const;
   static void mark_good(Entry& entry, Time at);
   bool is_since(const Entry& entry, Time since) const;

@@ -156,10 +156,10 @@ std::string unusable_text(const std::uint16_t* registers, const Point& point) {
       return fmt::format("the device gives 0x{:0{}X}{}, which the map calls invalid",
                          raw_value(point.format, registers), codec::width(point.format.type) / 4, which);
     const double raw = codec::published(registers, point.format, {});
-    if (raw < point.faults.below)
+    if (point.faults.is_below(raw))
       return fmt::format("the device gives {:.15g}{}, below fault_below ({:.15g})", raw, which,
                          point.faults.below);
-    if (raw > point.faults.above)
+    if (point.faults.is_above(raw))
       return fmt::format("the device gives {:.15g}{}, above fault_above ({:.15g})", raw, which,
                          point.faults.above);
   }

@@ -14,6 +14,7 @@
 #include "coupler/host/core/wall_time.hpp"
 #include "coupler/host/ros/message_time.hpp"
 #include "coupler/map/point.hpp"
+#include "coupler/map/published.hpp"
 
 namespace coupler::host {
 

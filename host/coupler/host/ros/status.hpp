@@ -16,7 +16,7 @@ namespace coupler::host {
 constexpr auto status_interval = std::chrono::seconds(1);
 
 /// The numbers of PointQuality::State::invalid and fault. The message PointStatus has no names for them,
-/// because other constants would make it another message to ROS 1, and bags could not be played.
+/// because a new constant would change its MD5 sum in ROS 1, and older bags could no longer be played.
 constexpr int invalid_quality = 7;
 constexpr int fault_quality = 8;
 

@@ -102,7 +102,7 @@ void warn_of_raw_meaning(const Point& point, bool writes_invalid, ConversionWarn
     warnings.add("'fault_below' and 'fault_above' are left out, so faults look like values",
                  "compare the raw value with them in the other program", point.name);
   if (point.scale.has_exponent())
-    warnings.add("the power of ten of a scale is in a register, so it is left out",
+    warnings.add("the exponent of a scale is in a register, so it is left out",
                  "multiply the value by 10 to the power of that point in the other program", point.name);
 }
 

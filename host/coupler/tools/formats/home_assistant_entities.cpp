@@ -51,7 +51,7 @@ void add_sensor(Entity& entity) {
       if (fits(none, value.registers))
         found.entry.children.push_back(scalar("invalid", none, entity.given().at));
       else
-        entity.lose(fmt::format("'nan_value: {}' is no value of the registers", none),
+        entity.lose(fmt::format("'nan_value: {}' does not fit into the registers", none),
                     "write what the device gives for no value as 'invalid', as in 'invalid: 0x8000'");
     }
     if (!units.empty()) found.entry.children.push_back(scalar("units", units, entity.given().at, true));

@@ -32,7 +32,11 @@ modbus::Function write_function(const Block& block, const Map& map) {
 
 std::vector<Block> read_blocks(const Map& map) {
   std::vector<Block> blocks;
-  for (const plan::GroupPlan& group : plan::make_read_plan(map))
+  std::vector<Point> points(map.points.begin(), map.points.end());
+  for (Point& point : points) point.scale.exponent_of = {};  // which the blocks do not use
+  Map without_exponents = map;
+  without_exponents.points = points;
+  for (const plan::GroupPlan& group : plan::make_read_plan(without_exponents))
     for (const plan::ReadSpan& span : group.spans)
       blocks.push_back({span.table, span.range, read_function(span.table), group.rate, span.points, {}});
   return blocks;

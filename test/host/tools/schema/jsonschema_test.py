@@ -28,7 +28,7 @@ UNSEEN = {name + ".yaml" for name in (
     # between keys
     "tls_with_rtu security_at_the_plain_port serial_and_address unit_of_a_serial_line broadcast_that_is_read broadcast_with_a_watchdog "
     # between points, or between a point and a limit
-    "overlap overlap_of_parts overlap_of_access overlap_of_inputs overlap_of_a_wired_input point_name_is_taken "
+    "overlap overlap_of_a_word_and_its_bits overlap_of_parts overlap_of_access overlap_of_inputs overlap_of_a_wired_input point_name_is_taken "
     "line_in_two_points point_exceeds_the_limits unreadable_before_a_write string_is_too_long_to_write preset_area "
     # between roles and what they name
     "security_plain_is_no_role security_role_is_called_none security_of_no_point "
