@@ -42,6 +42,7 @@ constexpr TypeName others[] = {
     {"signed16", Type::INT},
     {"integer16", Type::INT},
     {"short", Type::INT},
+    {"sunssf", Type::INT},
     {"int32", Type::DINT},
     {"int32_t", Type::DINT},
     {"i32", Type::DINT},
@@ -60,7 +61,7 @@ constexpr TypeName others[] = {
     {"signed64", Type::LINT},
     {"integer64", Type::LINT},
     {"longlong", Type::LINT},
-    // Unsigned numbers. intNu is Schneider's, unsignedN CANopen's, enumN and accN SunSpec's.
+    // Unsigned numbers. intNu is Schneider's, unsignedN CANopen's, enumN, accN and sunssf SunSpec's.
     {"uint8", Type::USINT},
     {"uint8_t", Type::USINT},
     {"u8", Type::USINT},

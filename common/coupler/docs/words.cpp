@@ -138,6 +138,19 @@ std::string words(const EdgeOf& edge) {
   return {};
 }
 
+namespace {
+
+/// The range of the type, without what is a fault.
+codec::PublishedRange published_range(const Point& point) {
+  const auto [least, most] = codec::published_range(point.format.type, {});
+  const auto published = [&](double raw) { return raw * point.scale.gain + point.scale.offset; };
+  const double a = published(std::max(least, point.faults.below));
+  const double b = published(std::min(most, point.faults.above));
+  return {std::min(a, b), std::max(a, b)};
+}
+
+}  // namespace
+
 std::string range_words(const Point& point) {
   const Type type = point.format.type;
   if (!codec::is_scalable(type)) return {};
@@ -149,7 +162,7 @@ std::string range_words(const Point& point) {
   const auto [min, max, nonfinite] = point.bounds;
   if (point.scale.has_exponent()) return {};  // only the device knows it
   if (min != Bounds::no_min && max != Bounds::no_max) return number(min) + " … " + number(max);
-  const auto [least, most] = codec::published_range(type, point.scale);
+  const auto [least, most] = published_range(point);
   // The channel takes no more, whatever the register could hold.
   if (point.pwm.present()) return number(std::max(0.0, least)) + " … " + number(std::min(100.0, most));
   if (is_float(type)) {
@@ -157,7 +170,7 @@ std::string range_words(const Point& point) {
     return max == Bounds::no_max ? "" : "up to " + number(max);
   }
   if (limits_values(point)) return number(std::max(min, least)) + " … " + number(std::min(max, most));
-  if (point.scale.present()) return number(least) + " … " + number(most);
+  if (point.scale.present() || point.faults.present()) return number(least) + " … " + number(most);
   return codec::with_number(type, [](auto zero) {
     using Limits = std::numeric_limits<decltype(zero)>;
     return fmt::format("{} … {}", Limits::lowest(), Limits::max());

@@ -30,7 +30,12 @@ std::string padded(const std::string& text, std::size_t to) {
 }
 
 std::string why_not(const Reading& reading) {
-  return reading.state == State::failed ? "not read: " + reading.why : reading.why;
+  switch (reading.state) {
+    case State::failed: return "not read: " + reading.why;
+    case State::invalid: return "invalid: " + reading.why;
+    case State::fault: return "fault: " + reading.why;
+    default: return reading.why;
+  }
 }
 
 std::string good_value(const Point& point, const Reading& reading) {
@@ -59,7 +64,11 @@ std::string head(const Map& map, const Snapshot& now) {
   if (now.error) return fmt::format("{}: offline: {}", where, printable(host::to_string(*now.error)));
   if (const std::size_t failed = now.failed(); failed > 0)
     return fmt::format("{}: {} of {} points not read", where, failed, now.readings.size());
-  return fmt::format("{}: {} point{}", where, now.readings.size(), now.readings.size() == 1 ? "" : "s");
+  const auto none = std::count_if(now.readings.begin(), now.readings.end(), [](const Reading& reading) {
+    return reading.state == State::invalid || reading.state == State::fault;
+  });
+  return fmt::format("{}: {} point{}{}", where, now.readings.size(), now.readings.size() == 1 ? "" : "s",
+                     none == 0 ? "" : fmt::format(", {} without a value", none));
 }
 
 void add_lines(std::vector<std::string>& lines, const std::string& text) {

@@ -200,11 +200,13 @@ class Spec:
         return any(first <= raw <= last for first, last in self.invalid)
 
     def why_none(self, words: list[int]) -> str:
-        parts = [words[at:at + self.size] for at in range(0, self.count * self.size, self.size)]
-        if any(self._is_invalid(part) for part in parts):
-            return "the device gives what the map calls invalid"
-        if any(self._is_fault(part) for part in parts):
-            return "the device gives a raw value beyond fault_below or fault_above"
+        for at in range(0, self.count * self.size, self.size):
+            part = words[at:at + self.size]
+            if self._is_invalid(part):
+                return f"the device gives 0x{_bytes(part, self.order).hex().upper()}, which the map calls invalid"
+            if self._is_fault(part):
+                end = "below fault_below" if self._raw(part) < self.fault_below else "above fault_above"
+                return f"the device gives {self._raw(part)}, {end}"
         return f"{self.exponent_of}, the exponent of its scale, has no value, or is out of range"
 
     def _is_fault(self, words: list[int]) -> bool:

@@ -45,8 +45,8 @@ std::optional<Wrong> why_not_scaled(const Point& point) {
 }  // namespace
 
 void check_exponents(const DraftPoints& points, const Context& context) {
-  std::unordered_map<std::string_view, const Point*> by_name;
-  for (const DraftPoint& draft : points) by_name.emplace(draft.point.name, &draft.point);
+  std::unordered_map<std::string_view, const DraftPoint*> by_name;
+  for (const DraftPoint& draft : points) by_name.emplace(draft.point.name, &draft);
   std::vector<std::string_view> names;  // made when it is needed
   for (const DraftPoint& draft : points) {
     const Point& point = draft.point;
@@ -64,7 +64,8 @@ void check_exponents(const DraftPoints& points, const Context& context) {
           if (why_no_exponent(each.point).empty()) names.push_back(each.point.name);
       context.problems.error(at, fmt::format("no point is called {}", shown(name)),
                              nearest_or(name, names, "write the name of the point that holds the exponent"));
-    } else if (const std::string why = why_no_exponent(*found->second); !why.empty()) {
+    } else if (const std::string why = why_no_exponent(found->second->point);
+               !why.empty() && found->second->placed) {
       context.problems.error(at, fmt::format("{} {}, so it cannot be an exponent", shown(name), why),
                              "name a point that is one integer without 'scale', such as an INT");
     }

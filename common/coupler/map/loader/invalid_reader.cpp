@@ -136,7 +136,21 @@ class InvalidReader {
                       point_.format.type == Type::BOOL ? "the register" : to_string(point_.format.type),
                       example_of(point_.format.type), shown(entry)),
           std::string(form));
+    if (raw) warn_of_narrow_bits(entry);
     return raw;
+  }
+
+  /// 0x8000 is what 16 bits have for no value. Of a type with more bits it is another number.
+  void warn_of_narrow_bits(const Entry& entry) const {
+    const unsigned digits = bits() / 4;
+    const auto given = static_cast<unsigned>(entry.text.size() - 2);
+    if (!is_hexadecimal(entry.text) || bits() <= 16 || given >= digits || given < 4) return;
+    const std::string zeros(digits - given, '0');
+    context_.problems.warning(entry.at,
+                              fmt::format("'invalid' has {} for the {} bits of {}", entry.text, bits(),
+                                          to_string(point_.format.type)),
+                              fmt::format("write all {0} digits: 0x{2}{1}, or 0x{1}{2} if that is meant",
+                                          digits, zeros, entry.text.substr(2)));
   }
 
   const Point& point_;
@@ -171,7 +185,13 @@ void read_faults(const Reader& reader, Point& point, const Context& context) {
   }
   const auto [least, most] = codec::published_range(point.format.type, {});
   const auto check = [&](std::string_view key, double bound, bool is_in_range) {
-    if (reader.has(key) && !is_in_range)
+    const bool is_whole = codec::is_float(point.format.type) || std::trunc(bound) == bound;
+    if (reader.has(key) && !is_whole)
+      context.problems.error(reader.find(key)->at,
+                             fmt::format("'{}' is {:.15g}, but raw values of {} are whole numbers", key,
+                                         bound, to_string(point.format.type)),
+                             "write the raw value, as the register holds it before 'scale'");
+    else if (reader.has(key) && !is_in_range)
       context.problems.error(reader.find(key)->at,
                              fmt::format("'{}' is {:.15g}, but raw values of {} are {:.15g} to {:.15g}", key,
                                          bound, to_string(point.format.type), least, most),

@@ -46,6 +46,7 @@ void check_area(const Preset& preset, const DraftPoint& draft, const Context& co
 
 std::vector<std::string> texts_of(const Entry& list) {
   std::vector<std::string> texts;
+  texts.reserve(list.children.size());
   for (const Entry& element : list.children) texts.push_back(element.text);
   return texts;
 }

@@ -75,9 +75,11 @@ bool is_word_and_part(const Point& word, const Point& part) {
   return !is_partial(word) && is_partial(part) && type != codec::Type::STRING && !codec::is_float(type);
 }
 
+/// One that is only read and one that is only written, or a word and its parts of which one side is only
+/// read.
 bool is_meant(const Point& a, const Point& b) {
-  const bool are_read = !is_writable(a) && !is_writable(b);
-  return are_read && (is_word_and_part(a, b) || is_word_and_part(b, a));
+  if (is_wired(a) || is_wired(b) || (is_writable(a) && is_writable(b))) return false;
+  return is_readable(a) != is_readable(b) || is_word_and_part(a, b) || is_word_and_part(b, a);
 }
 
 /// The owners of the bits of each address so far: of whole registers, and of parts of them. Writers are
@@ -117,7 +119,7 @@ class Claims {
       for (Claim& claim : claims) {
         if ((claim.mask & mask) == 0) continue;
         free = static_cast<std::uint16_t>(free & ~claim.mask);
-        found = worse(draft, found, claim.owner);
+        if (!is_meant(draft.point, claim.owner->point)) found = worse(draft, found, claim.owner);
       }
       if (free != 0) claims.push_back({free, &draft});
     }

@@ -15,6 +15,13 @@ constexpr S registers = S::input_register | S::holding_register;
 constexpr S point = bits | registers;
 constexpr S writable = S::coil | S::holding_register;
 
+constexpr std::string_view scale_or_exponent =
+    "the factor is 'scale', as in 'scale: 0.1', or 'scale: {exponent_of: POINT}' if the exponent is in a "
+    "register";
+constexpr std::string_view no_value = "write 'invalid: 0x8000' for a raw value that means 'no value'";
+constexpr std::string_view broken_wire =
+    "write 'fault_below' or 'fault_above' with the raw value beyond which something is broken";
+
 constexpr Synonym synonyms[] = {
     // The device.
     {"host", "the host of the device is 'address'", S::map},
@@ -66,19 +73,33 @@ constexpr Synonym synonyms[] = {
     {"index", "where the point is in its table is 'address'", point},
     {"datatype", "did you mean 'type'?", registers},
     {"format", "did you mean 'type'?", registers},
-    {"factor", "the factor is 'scale', as in 'scale: 0.1'", registers},
-    {"scaling", "the factor is 'scale', as in 'scale: 0.1'", registers},
-    {"scalefactor", "the factor is 'scale', as in 'scale: 0.1'", registers},
+    {"factor", scale_or_exponent, registers},
+    {"scaling", scale_or_exponent, registers},
+    {"scalefactor", scale_or_exponent, registers},
     {"multiplier", "the factor is 'scale', as in 'scale: 0.1'", registers},
     {"resolution", "the factor is 'scale', as in 'scale: 0.1'", registers},
     {"divisor", "write 'scale' with the inverse: a divisor of 10 is 'scale: 0.1'", registers},
     {"decimals", "write 'scale': one decimal place is 'scale: 0.1'", registers},
     {"precision", "write 'scale': one decimal place is 'scale: 0.1'", registers},
-    {"none", "write 'invalid: 0x8000' for a raw value that means 'no value'", registers},
-    {"nan", "write 'invalid: 0x8000' for a raw value that means 'no value'", registers},
-    {"nanvalue", "write 'invalid: 0x8000' for a raw value that means 'no value'", registers},
-    {"novalue", "write 'invalid: 0x8000' for a raw value that means 'no value'", registers},
-    {"notavailable", "write 'invalid: 0x8000' for a raw value that means 'no value'", registers},
+    {"none", no_value, registers},
+    {"invalidvalue", no_value, registers},
+    {"nullvalue", no_value, registers},
+    {"errorvalue", no_value, registers},
+    {"missing", no_value, registers},
+    {"sentinel", no_value, registers},
+    {"unavailable", no_value, registers},
+    {"na", no_value, registers},
+    {"fault", broken_wire, registers},
+    {"faultvalue", broken_wire, registers},
+    {"faultmin", broken_wire, registers},
+    {"faultmax", broken_wire, registers},
+    {"openwire", broken_wire, registers},
+    {"wirebreak", broken_wire, registers},
+    {"sf", scale_or_exponent, registers},
+    {"nan", no_value, registers},
+    {"nanvalue", no_value, registers},
+    {"novalue", no_value, registers},
+    {"notavailable", no_value, registers},
     {"bias", "what is added is the 'offset' of 'scale', as in 'scale: {gain: 0.1, offset: -40}'", registers},
     {"byteorder", "write 'order: ABCD', CDAB, BADC or DCBA; A is the most significant byte", registers},
     {"wordorder", "write 'order: ABCD', CDAB, BADC or DCBA; A is the most significant byte", registers},

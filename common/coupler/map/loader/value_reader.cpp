@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -213,7 +214,8 @@ std::optional<std::pair<double, double>> ends(const Reader& scale, std::string_v
     last = bare_number(entry->children[1]);
   }
   if (!first || !last) {
-    scale.wrong(key, "a list of two numbers");
+    scale.refuse(key, fmt::format("'{}' must be two numbers in a list", key),
+                 fmt::format("write it as in '{}: {}'", key, find_key(key, Section::scale)->example));
   } else if (*first == *last) {
     scale.refuse(key, fmt::format("'{}' has the same number twice", key), "write two different numbers");
   } else {
@@ -223,13 +225,13 @@ std::optional<std::pair<double, double>> ends(const Reader& scale, std::string_v
 }
 
 /// `raw` and `value`: two points of a line, in place of gain and offset.
-void read_ends(const Reader& reader, codec::Scale& scale) {
+void read_ends(const Reader& reader, Type type, codec::Scale& scale, const Context& context) {
   for (const auto& [key, other] : {std::pair("raw", "value"), std::pair("value", "raw")}) {
     if (!reader.has(key)) continue;
     if (!reader.has(other))
       return reader.refuse(key, fmt::format("'scale' has '{}' and no '{}'", key, other),
                            "write both, as in 'scale: {raw: [4000, 20000], value: [0, 10]}'");
-    for (const char* factor : {"gain", "offset"})
+    for (const char* factor : {"gain", "offset", "exponent_of"})
       if (reader.has(factor))
         return reader.refuse(
             factor, fmt::format("'{}' does not go with 'raw' and 'value', which determine it", factor),
@@ -238,6 +240,12 @@ void read_ends(const Reader& reader, codec::Scale& scale) {
   const auto raw = ends(reader, "raw");
   const auto value = ends(reader, "value");
   if (!raw || !value) return;
+  const auto [least, most] = codec::published_range(type, {});
+  if (std::min(raw->first, raw->second) < least || std::max(raw->first, raw->second) > most)
+    context.problems.warning(reader.find("raw")->at,
+                             fmt::format("'raw' has a number beyond those of {}, {:.15g} to {:.15g}",
+                                         to_string(type), least, most),
+                             "write another type, as UINT for 0 to 65535, or other numbers");
   const double gain = (value->second - value->first) / (raw->second - raw->first);
   const double offset = value->first - raw->first * gain;
   if (gain == 0 || !std::isfinite(gain) || !std::isfinite(offset))
@@ -282,13 +290,18 @@ void read_scale(const Reader& reader, Point& point, const Context& context) {
   if (entry->kind == Entry::Kind::map) {
     const Reader inside(*entry, Section::scale, context);
     inside.fields(scale);
-    read_ends(inside, scale);
+    read_ends(inside, point.format.type, scale, context);
     if (inside.has("exponent_of") && !scale.has_exponent())
       inside.wrong("exponent_of", "the name of a point");
     if (scale.gain == 0) inside.wrong("gain", "a number other than 0");
   } else if (const auto gain = bare_number(*entry)) {
     scale.gain = *gain;
     if (scale.gain == 0) reader.wrong("scale", scale_value);
+  } else if (entry->kind == Entry::Kind::scalar && !entry->text.empty() && is_letter(entry->text[0])) {
+    context.problems.error(entry->at, fmt::format("'scale' must be {}, not {}", scale_value, shown(*entry)),
+                           fmt::format("write it as in 'scale: 0.1', or 'scale: {{exponent_of: {}}}' if that "
+                                       "is the point with the exponent",
+                                       entry->text.substr(0, 40)));
   } else {
     reader.wrong("scale", scale_value);
   }

@@ -87,7 +87,7 @@ void ValueTable::store(const ReadSpan& span, Span<const std::uint16_t> registers
   notify();
 }
 
-/// Stores the points of the span whose scale has a power of ten, and those from before that have waited for
+/// Stores the points of the span whose scale has an exponent, and those from before that have waited for
 /// one of the span.
 bool ValueTable::store_scaled(const ReadSpan& span, Span<const std::uint16_t> registers, Stamp stamp,
                               Time good_at) {
@@ -154,7 +154,11 @@ void ValueTable::keep(Entry& entry, std::size_t i, std::uint16_t now) {
 bool ValueTable::is_expected(const Entry& entry) { return !entry.rejected && entry.why.empty(); }
 
 void ValueTable::set_waits(Scaling& scaling, bool waits) {
-  if (std::exchange(scaling.waits, waits) != waits) waiting_ += waits ? 1 : std::size_t(-1);
+  if (std::exchange(scaling.waits, waits) == waits) return;
+  if (waits)
+    ++waiting_;
+  else
+    --waiting_;
 }
 
 /// Ends the waiting of and for points that could not be read: the registers of the points themselves are

@@ -240,7 +240,8 @@ void add_rules_of_arrays(Section section, Rules& rules) {
 /// `scale:` as a map.
 Rules rules_of_a_scale() {
   Rules rules{{{"dependencies", {{"raw", {"value"}}, {"value", {"raw"}}}}}};
-  for (const std::string_view factor : {"gain", "offset"}) rules.push_back(not_both("raw", factor));
+  for (const std::string_view factor : {"gain", "offset", "exponent_of"})
+    rules.push_back(not_both("raw", factor));
   return rules;
 }
 
