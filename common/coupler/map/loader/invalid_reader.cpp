@@ -119,7 +119,9 @@ class InvalidReader {
   }
 
   /// All bits of the type; a BOOL has those of its register.
-  std::uint64_t mask_of_type() const { return ~std::uint64_t{0} >> (64 - bits()); }
+  std::uint64_t mask_of_type() const {
+    return bits() < 64 ? (std::uint64_t{1} << bits()) - 1 : ~std::uint64_t{0};
+  }
   unsigned bits() const { return point_.format.type == Type::BOOL ? 16 : codec::width(point_.format.type); }
 
   std::optional<std::uint64_t> raw_value(const Entry& entry) const {
@@ -183,7 +185,7 @@ void read_faults(const Reader& reader, Point& point, const Context& context) {
                       "use a type that is a number: SINT to ULINT, REAL or LREAL");
     return;
   }
-  const auto [least, most] = codec::published_range(point.format.type, {});
+  const codec::PublishedRange range = codec::published_range(point.format.type, {});
   const auto check = [&](std::string_view key, double bound, bool is_in_range) {
     const bool is_whole = codec::is_float(point.format.type) || std::trunc(bound) == bound;
     if (reader.has(key) && !is_whole)
@@ -194,11 +196,11 @@ void read_faults(const Reader& reader, Point& point, const Context& context) {
     else if (reader.has(key) && !is_in_range)
       context.problems.error(reader.find(key)->at,
                              fmt::format("'{}' is {:.15g}, but raw values of {} are {:.15g} to {:.15g}", key,
-                                         bound, to_string(point.format.type), least, most),
+                                         bound, to_string(point.format.type), range.least, range.most),
                              "write a raw value between them, as the register holds it before 'scale'");
   };
-  check("fault_below", faults.below, faults.below > least && faults.below <= most);
-  check("fault_above", faults.above, faults.above >= least && faults.above < most);
+  check("fault_below", faults.below, faults.below > range.least && faults.below <= range.most);
+  check("fault_above", faults.above, faults.above >= range.least && faults.above < range.most);
   if (faults.below > faults.above)
     context.problems.error(reader.find("fault_below")->at, "'fault_below' is above 'fault_above'",
                            "swap the two, or change one");
