@@ -23,7 +23,7 @@ constexpr TypeName others[] = {
     {"word64", Type::LWORD},
     {"qword", Type::LWORD},
     {"bitfield64", Type::LWORD},
-    // Signed numbers.
+    // Signed numbers. sunssf is SunSpec's.
     {"int8", Type::SINT},
     {"int8_t", Type::SINT},
     {"i8", Type::SINT},
@@ -61,7 +61,7 @@ constexpr TypeName others[] = {
     {"signed64", Type::LINT},
     {"integer64", Type::LINT},
     {"longlong", Type::LINT},
-    // Unsigned numbers. intNu is Schneider's, unsignedN CANopen's, enumN, accN and sunssf SunSpec's.
+    // Unsigned numbers. intNu is Schneider's, unsignedN CANopen's, enumN and accN SunSpec's.
     {"uint8", Type::USINT},
     {"uint8_t", Type::USINT},
     {"u8", Type::USINT},

@@ -64,6 +64,15 @@ std::string_view value_name(codec::Type type) {
   return {};
 }
 
+/// The range of the type, without what is a fault.
+codec::PublishedRange published_range(const Point& point) {
+  const auto [least, most] = codec::published_range(point.format.type, {});
+  const auto published = [&](double raw) { return raw * point.scale.gain + point.scale.offset; };
+  const double a = published(std::max(least, point.faults.below));
+  const double b = published(std::min(most, point.faults.above));
+  return {std::min(a, b), std::max(a, b)};
+}
+
 }  // namespace
 
 std::string words(Table table) {
@@ -137,19 +146,6 @@ std::string words(const EdgeOf& edge) {
   }
   return {};
 }
-
-namespace {
-
-/// The range of the type, without what is a fault.
-codec::PublishedRange published_range(const Point& point) {
-  const auto [least, most] = codec::published_range(point.format.type, {});
-  const auto published = [&](double raw) { return raw * point.scale.gain + point.scale.offset; };
-  const double a = published(std::max(least, point.faults.below));
-  const double b = published(std::min(most, point.faults.above));
-  return {std::min(a, b), std::max(a, b)};
-}
-
-}  // namespace
 
 std::string range_words(const Point& point) {
   const Type type = point.format.type;

@@ -123,7 +123,7 @@ Reading DeviceLooks::read(std::uint32_t point, const std::optional<host::Error>&
   }
   host::ValueTable::Value value = values_.get(point, clock_.now());
   const host::PointQuality& quality = value.quality;
-  const bool is_set_aside = !quality.why.empty() && quality.why != value.why_unusable;
+  const bool is_set_aside = !quality.why.empty() && !host::PointQuality::is_unusable(quality.state);
   if (quality.is_refused() || is_set_aside) {
     reading.why = refusal_text(quality, is_node());
     if (quality.why.empty()) reading.exception = quality.last_exception;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "coupler/docs/words.hpp"
 #include "coupler/map/rights_text.hpp"
 
 namespace coupler::tools {
@@ -60,14 +61,6 @@ std::string text_of(Span<const NamedValue> values) {
   std::string text;
   for (const NamedValue& named : values)
     text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", named.value, named.name);
-  return text;
-}
-
-std::string text_of(Span<const RawRange> ranges) {
-  std::string text;
-  for (const auto& [first, last] : ranges)
-    text += fmt::format("{}0x{:X}{}", text.empty() ? "" : ", ", first,
-                        first == last ? "" : fmt::format(" to 0x{:X}", last));
   return text;
 }
 
@@ -130,7 +123,7 @@ std::vector<Detail> details_of(const Point& point) {
       {"pwm-changed", compatible, text_of(point.pwm)},
       {"read-address-changed", compatible, point.read_address ? fmt::to_string(*point.read_address) : ""},
       {"values-changed", meaning, text_of(point.values)},
-      {"invalid-changed", meaning, text_of(point.invalid)},
+      {"invalid-changed", meaning, docs::words(point.invalid)},
       {"deadman-changed", compatible, deadman_text(point.host)},
   };
 }
