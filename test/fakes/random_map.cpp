@@ -38,6 +38,7 @@ std::string RandomMap::head() {
   if (one_in(2)) text += fmt::format("address: 10.0.0.{}\nport: {}\n", 1 + below(254), 1 + below(65535));
   // Where no point is.
   if (one_in(4)) text += "unreadable: [{table: input_registers, from: 60000, to: 60009}]\n";
+  if (one_in(4)) text += "read_whole: [{table: input_registers, from: 60010, to: 60019}]\n";
   if (one_in(3)) text += fmt::format("limits: {{read_registers: {}}}\n", 32 + below(94));
   return text;
 }

@@ -9,7 +9,7 @@
 
 namespace coupler::testing {
 
-static_assert(model_version == 14, "Compare the new fields of the model here, too");
+static_assert(model_version == 15, "Compare the new fields of the model here, too");
 
 /// What fields_of() lists.
 template <class Struct>
@@ -137,10 +137,12 @@ inline void expect_same(const Map& a, const Map& b) {
   EXPECT_EQ(a.text_crc, b.text_crc);
   expect_same(a.service, b.service);
   expect_same_fields(a, b);
-  ASSERT_EQ(a.unreadable.size(), b.unreadable.size());
-  for (std::size_t i = 0; i < a.unreadable.size(); ++i) {
-    EXPECT_EQ(a.unreadable[i].table, b.unreadable[i].table);
-    EXPECT_EQ(a.unreadable[i].range, b.unreadable[i].range);
+  for (const auto areas : {&Map::unreadable, &Map::read_whole}) {
+    ASSERT_EQ((a.*areas).size(), (b.*areas).size());
+    for (std::size_t i = 0; i < (a.*areas).size(); ++i) {
+      EXPECT_EQ((a.*areas)[i].table, (b.*areas)[i].table);
+      EXPECT_EQ((a.*areas)[i].range, (b.*areas)[i].range);
+    }
   }
   expect_same(a.coupler_watchdog, b.coupler_watchdog);
   expect_same(a.security, b.security);

@@ -21,13 +21,15 @@ class Device(IModbusSlaveContext):
     """Tables of {address: value}; keeps a list of what was asked.
 
     most: registers in one read; more are refused with `too_many`. closes: in place of an exception.
+    whole: ranges of input registers that are given in one piece only.
     """
 
-    def __init__(self, tables, most=125, too_many=3, closes=False):
+    def __init__(self, tables, most=125, too_many=3, closes=False, whole=()):
         self.tables = {name: tables.get(name, {}) for name in TABLE_OF.values()}
         self.most = most
         self.too_many = too_many
         self.closes = closes
+        self.whole = whole
         self.functions = []  # of all requests
         self.refused = []  # (function, address, count)
         self.was_too_many = False
@@ -36,6 +38,8 @@ class Device(IModbusSlaveContext):
         has = self.tables.get(TABLE_OF.get(fc_as_hex), {})
         self.was_too_many = fc_as_hex in (3, 4) and count > self.most
         good = not self.was_too_many and all(at in has for at in range(address, address + count))
+        asked = set(range(address, address + count))
+        good &= fc_as_hex != 4 or all(asked.isdisjoint(piece) or asked.issuperset(piece) for piece in self.whole)
         if not good:
             self.refused.append((fc_as_hex, address, count))
         return good

@@ -118,6 +118,27 @@ def a_unit_is_found(folder, checks):
     nothing_was_written(device, checks)
 
 
+def texts_are_found(folder, checks):
+    """In either order, with an odd number of characters or an even one, among numbers."""
+    registers = {at: at for at in range(60)}
+    for start, text, order in ((10, b"WAGO 750-352\0", ">"), (20, b"PM-12 meter\0", "<"), (30, b"Line 3 voltage", "<")):
+        text += b"\0" * (len(text) % 2)
+        registers.update(enumerate(struct.unpack(f"{order}{len(text) // 2}H", text), start))
+    device = foreign_server.Device({"holding_registers": registers})
+    draft = folder / "texts.yaml"
+    with foreign_server.serving(device) as port:
+        found = probe(f"127.0.0.1:{port}/1", "--to", "99", "--out", draft)
+        checks.equal("the texts", re.findall(r"  holding_registers +{(.*)} +(\".*)", found.stdout),
+                     [("address: 10, type: STRING, length: 12, order: AB", '"WAGO 750-352"'),
+                      ("address: 20, type: STRING, length: 11, order: BA", '"PM-12 meter"'),
+                      ("address: 30, type: STRING, length: 14, order: BA", '"Line 3 voltage"')])
+        the_draft_is_good(draft, device, port, checks)
+        read = subprocess.run([COUPLER, "dump", draft, "--json"], capture_output=True, text=True, timeout=peer.PATIENCE)
+    values = {point["point"]: point["value"] for point in json.loads(read.stdout)["points"]}
+    checks.equal("its points", [values.get(f"holding_registers_text_{at}") for at in (10, 20, 30)],
+                 ["WAGO 750-352", "PM-12 meter", "Line 3 voltage"])
+
+
 def nothing_makes_no_draft(folder, checks):
     """It answers each read with an exception: 02, as most do."""
     device = foreign_server.Device({})
@@ -236,6 +257,7 @@ def main():
                     pool.submit(the_largest_count_is_found, 3, folder, checks),
                     pool.submit(the_largest_count_is_found, 2, folder, checks),
                     pool.submit(a_unit_is_found, folder, checks),
+                    pool.submit(texts_are_found, folder, checks),
                     pool.submit(nothing_makes_no_draft, folder, checks),
                     pool.submit(closed_connections_end_nothing, folder, checks),
                     pool.submit(a_known_value_is_found_in_each_order, folder, checks),

@@ -128,18 +128,20 @@ constexpr Enumeration<Encoding, 3> enumeration(Encoding) {
            {Encoding::latin1, "latin1", "latin-1"}}};
 }
 
+constexpr std::uint16_t longest_text = 250;  ///< bytes of a STRING: what one read may ask for
+
 /// How one value stands in its registers (or, BOOL in a bit table, in one bit).
 struct Format {
   Type type = Type::BOOL;
   Order order = Order::ABCD;  ///< ABCD or BADC for values of at most one register
   Half half = Half::high;     ///< 8-bit types
   std::uint8_t bit = 0;       ///< BOOL in a register: 0 … 15, counted after the byte order is undone
-  std::uint16_t length = 0;   ///< STRING: bytes, 1 … 250
+  std::uint16_t length = 0;   ///< STRING: bytes, 1 … longest_text
   Encoding encoding = Encoding::utf8;  ///< STRING
 };
 
-/// A STRING stores its first character in the low byte unless the map says `ignore_byteorder`: its order is
-/// BADC by default and ABCD with `ignore_byteorder: true`, whatever the global keys say.
+/// A STRING stores its first character in the low byte, as BADC says, unless its point has `order: AB` or the
+/// older `ignore_byteorder: true`, whatever the global keys say.
 constexpr bool ignores_byte_order(const Format& format) {
   return format.type == Type::STRING && format.order == Order::ABCD;
 }

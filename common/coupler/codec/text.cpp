@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/codec/text.hpp"
 
+#include <array>
+
 namespace coupler::codec {
 namespace {
 
@@ -67,6 +69,29 @@ char* put_decoded(std::uint8_t byte, Encoding encoding, char* text) {
   return text;
 }
 
+bool is_utf8(std::string_view text) {
+  while (!text.empty())
+    if (take_code_point(text) < 0) return false;
+  return true;
+}
+
+/// The text with "\\xff" in place of each byte that begins no character.
+std::string escaped(std::string_view text) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string result;
+  while (!text.empty()) {
+    const std::string_view before = text;
+    const auto first = static_cast<std::uint8_t>(text.front());
+    if (take_code_point(text) >= 0) {
+      result += before.substr(0, before.size() - text.size());
+      continue;
+    }
+    result.append({'\\', 'x', digits[first >> 4U], digits[first & 0xFU]});
+    text = before.substr(1);
+  }
+  return result;
+}
+
 }  // namespace
 
 std::size_t decode_text(const std::uint16_t* registers, const Format& format, char* text) {
@@ -82,6 +107,21 @@ std::size_t decode_text(const std::uint16_t* registers, const Format& format, ch
 void decode_text(const std::uint16_t* registers, const Format& format, std::string& text) {
   text.resize(max_text_size(format));
   text.resize(decode_text(registers, format, text.data()));
+  if (!is_utf8(text)) text = escaped(text);
+}
+
+std::optional<std::uint8_t> first_unknown_byte(const std::uint16_t* registers, const Format& format) {
+  if (format.encoding == Encoding::latin1) return std::nullopt;
+  std::array<char, longest_text> bytes{};
+  std::size_t size = 0;
+  while (size < format.length && (bytes[size] = static_cast<char>(wire_byte(registers, format, size))) != 0)
+    ++size;
+  for (std::string_view rest(bytes.data(), size); !rest.empty();) {
+    const auto first = static_cast<std::uint8_t>(rest.front());
+    const std::int32_t code = take_code_point(rest);
+    if (code < 0 || (format.encoding == Encoding::ascii && code > 0x7F)) return first;
+  }
+  return std::nullopt;
 }
 
 bool is_plain_text(std::string_view text) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -20,8 +21,12 @@ constexpr std::size_t max_text_size(const Format& format) {
 /// '?' (ascii) or stay as they are (utf-8). No heap.
 std::size_t decode_text(const std::uint16_t* registers, const Format& format, char* text);
 
-/// The same. `text` keeps its capacity from call to call.
+/// The same, but `text` is always UTF-8: bytes that are not are escaped, as "\xff". `text` keeps its capacity
+/// from call to call.
 void decode_text(const std::uint16_t* registers, const Format& format, std::string& text);
+
+/// Returns the first byte of a STRING, up to its end, that its encoding does not know.
+std::optional<std::uint8_t> first_unknown_byte(const std::uint16_t* registers, const Format& format);
 
 /// Returns whether a text is UTF-8 (RFC 3629) without control characters: those below U+0020, and U+007F to
 /// U+009F.

@@ -68,9 +68,12 @@ FactGroup limits(const Map& map) {
     group.facts.push_back({"Pause before a request", words(limits.request_gap)});
   if (limits.connect_delay.count() > 0)
     group.facts.push_back({"Pause after connecting", words(limits.connect_delay)});
-  for (const Unreadable& area : map.unreadable)
+  for (const TableRange& area : map.unreadable)
     group.facts.push_back(
         {"Unreadable", fmt::format("{} {} – {}", words(area.table), area.range.start(), area.range.last())});
+  for (const TableRange& area : map.read_whole)
+    group.facts.push_back({"Read in one piece", fmt::format("{} {} – {}", words(area.table),
+                                                            area.range.start(), area.range.last())});
   return group;
 }
 

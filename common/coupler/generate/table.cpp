@@ -44,7 +44,7 @@ using ::coupler::Safe;
 using ::coupler::Serial;
 using ::coupler::SimWire;
 using ::coupler::Table;
-using ::coupler::Unreadable;
+using ::coupler::TableRange;
 using ::coupler::Watchdog;
 using ::coupler::WatchdogSequences;
 using ::coupler::codec::Encoding;
@@ -58,7 +58,7 @@ using namespace ::std::chrono_literals;
 template <::std::uint16_t... Words>
 constexpr ::std::uint16_t registers[] = {{Words...}};
 
-{values}{points}{sim}{allow}{roles}{unreadable}{sequences}// The file itself, byte by byte: the node serves it.
+{values}{points}{sim}{allow}{roles}{unreadable}{read_whole}{sequences}// The file itself, byte by byte: the node serves it.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Woverlength-strings"
 constexpr char text[] =
@@ -82,6 +82,7 @@ constexpr Map map{{
     {coupler_watchdog},  // timeout, recovery, feed every, arm, feed, reset, how it shows that it has expired
     {poll}, {changes}, {verify},
     {security},  // roles, those of clients without TLS and without a role, files, port
+    {read_whole_name},
 }};
 
 }}  // namespace coupler::maps::{name}
@@ -159,7 +160,7 @@ std::string row(const Point& point, std::size_t index) {
 
 std::string row(const SimWire& wire) { return fmt::format("    {},\n", aggregate(wire)); }
 
-std::string row(const Unreadable& area) {
+std::string row(const TableRange& area) {
   return fmt::format("    {{{}, Range::of({}, {})}},\n", enumerator(area.table), area.range.start(),
                      area.range.count());
 }
@@ -275,8 +276,10 @@ std::string table_source(const Map& map, const Provenance& provenance) {
                 map.points)),
       arg("values", values(map)), arg("sim", array("SimWire sim", keys_of<SimWire>(), map.sim)),
       arg("allow", array("::std::string_view allow", "Who may connect.", map.service.allow)),
-      arg("unreadable", array("Unreadable unreadable", "What is never read.", map.unreadable)),
+      arg("unreadable", array("TableRange unreadable", "What is never read.", map.unreadable)),
       arg("unreadable_name", map.unreadable.empty() ? "{}" : "unreadable"),
+      arg("read_whole", array("TableRange read_whole", "What is read in one piece.", map.read_whole)),
+      arg("read_whole_name", map.read_whole.empty() ? "{}" : "read_whole"),
       arg("sequences", sequences(map.coupler_watchdog)), arg("roles", roles(map.security)),
       arg("security", security(map.security)),
       arg("coupler_watchdog", coupler_watchdog(map.coupler_watchdog)),

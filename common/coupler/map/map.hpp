@@ -17,7 +17,7 @@ namespace coupler {
 
 /// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
 /// not compile.
-constexpr int model_version = 14;
+constexpr int model_version = 15;
 
 /// The place of the coupler. ROS parameters and arguments override it.
 struct Connection {
@@ -69,8 +69,8 @@ constexpr bool needs_answers(const Point& point, const Limits& limits) {
   return is_readable(point) || (is_partial(point) && !limits.mask_write);
 }
 
-/// Addresses that the device refuses: never read, not even to join the points around them.
-struct Unreadable {
+/// Addresses of a table.
+struct TableRange {
   Table table = Table::coils;
   modbus::Range range;
 };
@@ -141,12 +141,14 @@ struct Map {
   Service service{};
   OnReconnect on_reconnect = OnReconnect::drop;
   OnShutdown on_shutdown = OnShutdown::hold;
-  Span<const Unreadable> unreadable{};
+  Span<const TableRange>
+      unreadable{};  ///< by place: the device refuses them; never read, not even between points
   WatchdogSequences coupler_watchdog{};
   Poll poll = Poll::all;
   bool changes = true;  ///< the driver listens to changes that a node announces; false: it polls only
   Verify verify = Verify::require;
   Security security{};
+  Span<const TableRange> read_whole{};  ///< by place, none overlaps another: read whole for any point in it
 };
 
 /// The point of that name, or nullptr.

@@ -32,7 +32,7 @@ Span<const RawRange> OwnedMap::keep(const std::vector<RawRange>& ranges) {
   return raw_ranges_.emplace_back(ranges.begin(), ranges.end());
 }
 
-Span<const Unreadable> OwnedMap::keep(const std::vector<Unreadable>& areas) {
+Span<const TableRange> OwnedMap::keep(const std::vector<TableRange>& areas) {
   return areas_.emplace_back(areas.begin(), areas.end());
 }
 

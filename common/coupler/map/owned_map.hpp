@@ -32,7 +32,7 @@ class OwnedMap {
   /// Keeps the list; its names must be kept, too.
   Span<const NamedValue> keep(const std::vector<NamedValue>& values);
   Span<const RawRange> keep(const std::vector<RawRange>& ranges);
-  Span<const Unreadable> keep(const std::vector<Unreadable>& areas);
+  Span<const TableRange> keep(const std::vector<TableRange>& areas);
   Span<const WatchdogSequences::Write> keep(const std::vector<WatchdogSequences::Write>& sequence);
   /// Keeps the list; what its elements view must be kept, too.
   Span<const std::string_view> keep(const std::vector<std::string_view>& list);
@@ -51,7 +51,7 @@ class OwnedMap {
   std::pmr::deque<std::pmr::vector<std::string_view>> lists_;
   std::pmr::deque<std::pmr::vector<NamedValue>> values_;
   std::pmr::deque<std::pmr::vector<RawRange>> raw_ranges_;
-  std::pmr::deque<std::pmr::vector<Unreadable>> areas_;
+  std::pmr::deque<std::pmr::vector<TableRange>> areas_;
   std::pmr::deque<std::pmr::vector<WatchdogSequences::Write>> sequences_;
   std::pmr::vector<Role> roles_;
   std::pmr::deque<std::pmr::vector<std::uint8_t>> rights_;

@@ -118,7 +118,7 @@ class Picture {
       text(TableLayout::left - 8, row.y + scale_.height / 2 + 4, "address",
            fmt::format("{} · {}", row.first, modicon(table, row.first)));
     }
-    for (const Unreadable& area : map_.unreadable)
+    for (const TableRange& area : map_.unreadable)
       if (area.table == table)
         boxes(layout, area.range, "unreadable", "",
               fmt::format("unreadable: {} to {}", area.range.start(), area.range.last()));

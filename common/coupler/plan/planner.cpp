@@ -28,18 +28,14 @@ std::uint32_t gap_of(const Map& map, Table table) {
   return holds_bits(table) ? map.polling.discrete_gap : map.polling.register_gap;
 }
 
-Range hull(Range a, Range b) {
-  const std::uint32_t start = std::min(a.start(), b.start());
-  return Range::of(start, std::max(a.end(), b.end()) - start);
-}
-
-bool is_at(Table table, const Unreadable& area, Range range) {
+bool is_at(Table table, const TableRange& area, Range range) {
   return area.table == table && area.range.overlaps(range);
 }
 
 void sort_by_place(const Map& map, std::vector<std::uint32_t>& points) {
   const auto place = [&](std::uint32_t i) {
-    return std::tuple(map.points[i].table, read_range(map.points[i]).start(), i);
+    const Point& point = map.points[i];
+    return std::tuple(point.table, read_extent(map, point).start(), read_range(point).start(), i);
   };
   std::sort(points.begin(), points.end(),
             [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
@@ -49,9 +45,9 @@ void sort_by_place(const Map& map, std::vector<std::uint32_t>& points) {
 
 std::optional<NotRead> why_not_read(const Map& map, const Point& point) {
   if (!is_readable(point)) return NotRead::write_only;
-  const Range range = read_range(point);
+  const Range range = read_extent(map, point);
   if (range.count() > longest_reply(point.table)) return NotRead::too_long;
-  for (const Unreadable& area : map.unreadable)
+  for (const TableRange& area : map.unreadable)
     if (is_at(point.table, area, range)) return NotRead::unreadable;
   return std::nullopt;
 }
@@ -62,13 +58,13 @@ Planner::Planner(const Map& map)
   std::array<std::vector<Range>, tables.size()> readable;
   std::array<std::vector<Range>, tables.size()> write_only;
   std::array<std::vector<Range>, tables.size()> unreadable;
-  for (const Unreadable& area : map.unreadable) unreadable[index(area.table)].push_back(area.range);
+  for (const TableRange& area : map.unreadable) unreadable[index(area.table)].push_back(area.range);
   for (std::uint32_t i = 0; i < map.points.size(); ++i) {
     const Point& point = map.points[i];
     const auto reason = why_not_read(map, point);
     if (!reason) {
       order_.push_back(i);
-      readable[index(point.table)].push_back(read_range(point));
+      readable[index(point.table)].push_back(read_extent(map, point));
     } else if (reason == NotRead::write_only) {
       write_only[index(point.table)].push_back(range(point));
     }
@@ -106,7 +102,7 @@ std::array<Intervals, tables.size()> Planner::together(Span<const std::uint32_t>
   std::array<std::vector<Range>, tables.size()> ranges;
   for (const auto& [point, exponent] : scaled_) {
     const Table table = map_.points[point].table;
-    const Range both = hull(read_range(map_.points[point]), read_range(map_.points[exponent]));
+    const Range both = hull(read_extent(map_, map_.points[point]), read_extent(map_, map_.points[exponent]));
     const bool is_one_table = table == map_.points[exponent].table;
     if (is_in[point] && is_in[exponent] && is_one_table && both.count() <= limit_of(map_, table))
       ranges[index(table)].push_back(both);
@@ -118,12 +114,12 @@ std::array<Intervals, tables.size()> Planner::together(Span<const std::uint32_t>
 /// Returns the range of the point, up to the end of the exponent of its scale if that is read behind it and
 /// one request can read both.
 Range Planner::with_exponent_behind(std::uint32_t point, const std::vector<bool>& is_in) const {
-  const Range own = read_range(map_.points[point]);
+  const Range own = read_extent(map_, map_.points[point]);
   const auto scaled = std::lower_bound(scaled_.begin(), scaled_.end(), point,
                                        [](const ScaledPoint& a, std::uint32_t i) { return a.point < i; });
   if (scaled == scaled_.end() || scaled->point != point || !is_in[scaled->exponent]) return own;
   const Point& exponent = map_.points[scaled->exponent];
-  const Range both = hull(own, read_range(exponent));
+  const Range both = hull(own, read_extent(map_, exponent));
   const Table table = map_.points[point].table;
   const bool is_possible = exponent.table == table && both.count() <= limit_of(map_, table);
   return is_possible && both.start() == own.start() ? both : own;
@@ -136,7 +132,7 @@ double Planner::rate_of_span(const ReadSpan& span) const {
   return rate_of(map_, map_.points[own == span.points.end() ? span.points.front() : *own]);
 }
 
-std::vector<ReadSpan> Planner::plan(Span<const std::uint32_t> points, Span<const Unreadable> refused) const {
+std::vector<ReadSpan> Planner::plan(Span<const std::uint32_t> points, Span<const TableRange> refused) const {
   std::vector<bool> is_in(has_exponents() ? map_.points.size() : 0);
   if (has_exponents())
     for (const std::uint32_t point : points) is_in[point] = true;
@@ -147,7 +143,7 @@ std::vector<ReadSpan> Planner::plan(Span<const std::uint32_t> points, Span<const
   };
   for (const std::uint32_t i : points) {
     const Point& point = map_.points[i];
-    const Range range = read_range(point);
+    const Range range = read_extent(map_, point);
     if (!spans.empty() && spans.back().table == point.table) {
       ReadSpan& last = spans.back();
       const auto apart =
@@ -167,8 +163,8 @@ std::vector<ReadSpan> Planner::plan(Span<const std::uint32_t> points, Span<const
   return spans;
 }
 
-bool Planner::refuses(Table table, Range range, Span<const Unreadable> refused) const {
-  return std::any_of(refused.begin(), refused.end(), [&](const Unreadable& area) {
+bool Planner::refuses(Table table, Range range, Span<const TableRange> refused) const {
+  return std::any_of(refused.begin(), refused.end(), [&](const TableRange& area) {
     return area.table == table && range.contains(area.range);
   });
 }
@@ -202,10 +198,11 @@ Cut Planner::last_cut(const ReadSpan& span, const Wishes& wishes) const {
   const auto next =
       std::lower_bound(order_.begin(), order_.end(), span, [&](std::uint32_t i, const ReadSpan& s) {
         const Point& point = map_.points[i];
-        return point.table < s.table || (point.table == s.table && read_range(point).start() < s.range.end());
+        return point.table < s.table ||
+               (point.table == s.table && read_extent(map_, point).start() < s.range.end());
       });
   if (next == order_.end() || map_.points[*next].table != span.table) return {};
-  const Range range = read_range(map_.points[*next]);
+  const Range range = read_extent(map_, map_.points[*next]);
   const bool same_rate = rate_of(map_, map_.points[*next]) == rate_of_span(span);
   if (same_rate || why_apart(span, range, range, wishes)) return {};
   return {Reason::other_rate, *next, static_cast<std::uint32_t>(range.start() - span.range.end())};

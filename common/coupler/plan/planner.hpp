@@ -71,7 +71,7 @@ class Planner {
 
   /// The requests for `points`, given in the order of a RateGroup; ordered by table and address. Points are
   /// not joined to a request that contains one of `refused`.
-  std::vector<ReadSpan> plan(Span<const std::uint32_t> points, Span<const Unreadable> refused = {}) const;
+  std::vector<ReadSpan> plan(Span<const std::uint32_t> points, Span<const TableRange> refused = {}) const;
 
   /// A point that can be read has some of the addresses.
   bool has_points(Table table, modbus::Range range) const { return readable_[index(table)].overlaps(range); }
@@ -79,10 +79,10 @@ class Planner {
   const Map& map() const { return map_; }
 
  private:
-  bool refuses(Table table, modbus::Range range, Span<const Unreadable> refused) const;
+  bool refuses(Table table, modbus::Range range, Span<const TableRange> refused) const;
   /// What the requests of a plan must respect, besides the map.
   struct Wishes {
-    Span<const Unreadable> refused;
+    Span<const TableRange> refused;
     std::array<Intervals, tables.size()> together;  ///< from a point to the exponent of its scale
   };
   std::array<Intervals, tables.size()> together(Span<const std::uint32_t> points) const;

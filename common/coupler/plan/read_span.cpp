@@ -5,16 +5,34 @@
 #include <optional>
 
 namespace coupler::plan {
-namespace {
 
 using modbus::Range;
 
+Range hull(Range a, Range b) {
+  const std::uint32_t start = std::min(a.start(), b.start());
+  return Range::of(start, std::max(a.end(), b.end()) - start);
+}
+
+Range read_extent(const Map& map, const Point& point) {
+  const Range own = read_range(point);
+  const auto* area =
+      std::partition_point(map.read_whole.begin(), map.read_whole.end(), [&](const TableRange& each) {
+        return index(each.table) < index(point.table) ||
+               (each.table == point.table && each.range.end() <= own.start());
+      });
+  Range extent = own;
+  for (; area != map.read_whole.end() && area->table == point.table && area->range.start() < own.end();
+       ++area)
+    extent = hull(extent, area->range);
+  return extent;
+}
+
+namespace {
+
 ReadSpan piece(const ReadSpan& span, std::size_t from, std::size_t to, const Map& map) {
-  ReadSpan result{span.table, read_range(map.points[span.points[from]]), {}};
-  const std::uint32_t start = result.range.start();
+  ReadSpan result{span.table, read_extent(map, map.points[span.points[from]]), {}};
   for (std::size_t i = from; i < to; ++i) {
-    const std::uint32_t end = std::max(result.range.end(), read_range(map.points[span.points[i]]).end());
-    result.range = Range::of(start, end - start);
+    result.range = hull(result.range, read_extent(map, map.points[span.points[i]]));
     result.points.push_back(span.points[i]);
   }
   return result;
@@ -25,7 +43,7 @@ template <class AtHole>
 void for_each_hole(const ReadSpan& span, const Map& map, AtHole&& at_hole) {
   std::uint32_t end = span.range.start();
   for (std::size_t i = 0; i < span.points.size(); ++i) {
-    const Range range = read_range(map.points[span.points[i]]);
+    const Range range = read_extent(map, map.points[span.points[i]]);
     if (range.start() > end) at_hole(i, Range::of(end, range.start() - end));
     end = std::max(end, range.end());
   }
@@ -38,9 +56,9 @@ constexpr std::size_t distance(std::size_t a, std::size_t b) { return a > b ? a 
 std::size_t middle_boundary(const ReadSpan& span, const Map& map) {
   const std::size_t middle = span.points.size() / 2;
   std::optional<std::size_t> best;
-  std::uint32_t end = read_range(map.points[span.points.front()]).end();
+  std::uint32_t end = read_extent(map, map.points[span.points.front()]).end();
   for (std::size_t i = 1; i < span.points.size(); ++i) {
-    const Range range = read_range(map.points[span.points[i]]);
+    const Range range = read_extent(map, map.points[span.points[i]]);
     const bool apart = range.start() >= end;
     if (apart && (!best || distance(i, middle) < distance(*best, middle))) best = i;
     end = std::max(end, range.end());

@@ -64,9 +64,9 @@ std::string text_of(Span<const NamedValue> values) {
   return text;
 }
 
-std::string unreadable_text(const Map& map) {
+std::string areas_text(Span<const TableRange> areas) {
   std::string text;
-  for (const Unreadable& area : map.unreadable)
+  for (const TableRange& area : areas)
     text += fmt::format("{}{} {}-{}", text.empty() ? "" : ", ", to_string(area.table), area.range.start(),
                         area.range.last());
   return text;
@@ -132,7 +132,8 @@ std::vector<Detail> details_of(const Map& map) {
   const Span<const std::string_view> allow = map.service.allow;
   return {
       {"name-changed", compatible, std::string(map.name)},
-      {"unreadable-changed", compatible, unreadable_text(map)},
+      {"unreadable-changed", compatible, areas_text(map.unreadable)},
+      {"read-whole-changed", compatible, areas_text(map.read_whole)},
       {"allow-changed", compatible, fmt::format("{}", fmt::join(allow.begin(), allow.end(), ", "))},
       {"coupler-watchdog-changed", compatible, watchdog_text(map.coupler_watchdog)},
       {"sim-changed", compatible, sim_text(map)},

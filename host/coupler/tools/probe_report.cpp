@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "coupler/host/scan/identification.hpp"
+#include "coupler/host/scan/texts.hpp"
 #include "coupler/map/fields.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/map/printable.hpp"
@@ -112,6 +113,16 @@ std::string match_text(const scan::Match& match) {
   return text;
 }
 
+std::string texts_text(const Findings& findings) {
+  const std::vector<scan::FoundText> texts = scan::find_texts(findings.tables);
+  std::string text = texts.empty() ? "" : "texts:\n";
+  for (std::size_t i = 0; i < std::min(texts.size(), most_ranges); ++i)
+    text += fmt::format("  {:<18} {:<52} {}\n", to_string(texts[i].table), scan::point_text(texts[i]),
+                        scan::value_text(texts[i]));
+  if (texts.size() > most_ranges) text += fmt::format("  and {} more texts\n", texts.size() - most_ranges);
+  return text;
+}
+
 std::string orders_text(const std::vector<scan::Match>& matches) {
   const auto order = scan::common_order(matches);
   if (!order) return {};
@@ -154,6 +165,7 @@ std::string probe_report(const Findings& findings, const scan::Task& task, const
   text += limit_text(findings.largest.bits, "bits");
   for (const scan::Match& match : matches) text += match_text(match);
   text += orders_text(matches);
+  text += texts_text(findings);
   text += fmt::format("requests: {}\n", findings.requests);
   for (const std::string& failure : findings.failures)
     text += fmt::format("  without an answer: {}\n", printable(failure));

@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 
+#include "coupler/codec/text.hpp"
 #include "coupler/codec/value.hpp"
 
 namespace coupler::codec {
@@ -144,6 +145,29 @@ TEST(Format, Halves_and_bits_mask_exactly_their_part) {
   f.order = Order::BADC;
   EXPECT_EQ(mask(f), 0x0800);
   EXPECT_EQ(mask(format(Type::UINT)), 0xFFFF);
+}
+
+TEST(Text, Bytes_that_are_no_utf_8_are_escaped) {
+  Format f = format(Type::STRING);
+  f.length = 6;
+  f.order = Order::ABCD;
+  const std::uint16_t registers[] = {0x67FC, 0xC3A9, 0xE282};  // "g", 0xFC, "é", and a character that is cut
+  EXPECT_EQ(std::get<std::string>(decode(registers, f)), "g\\xfcé\\xe2\\x82");
+  EXPECT_EQ(first_unknown_byte(registers, f), 0xFC);
+  f.encoding = Encoding::latin1;
+  EXPECT_EQ(std::get<std::string>(decode(registers, f)), "gü\u00C3©â\u0082");
+  EXPECT_EQ(first_unknown_byte(registers, f), std::nullopt);
+}
+
+TEST(Text, A_byte_that_ascii_does_not_have_is_found_before_the_end_of_the_text_only) {
+  Format f = format(Type::STRING);
+  f.length = 4;
+  f.order = Order::ABCD;
+  f.encoding = Encoding::ascii;
+  const std::uint16_t text[] = {0x4142, 0x00FF};
+  EXPECT_EQ(first_unknown_byte(text, f), std::nullopt);
+  const std::uint16_t odd[] = {0x41B0, 0x0000};
+  EXPECT_EQ(first_unknown_byte(odd, f), 0xB0);
 }
 
 TEST(Format, Registers_follow_from_the_type) {

@@ -67,7 +67,7 @@ TEST(Facts, A_watchdog_is_fed_only_by_who_has_written_an_output) {
 TEST(Facts, Only_what_is_unusual_of_the_limits_is_told) {
   auto builder = fakes::MapBuilder();
   EXPECT_EQ(told(builder.build(), "Pause before a request"), "-");
-  static const Unreadable area[] = {{Table::input_registers, modbus::Range::of(100, 10)}};
+  static const TableRange area[] = {{Table::input_registers, modbus::Range::of(100, 10)}};
   auto gentle = fakes::MapBuilder();
   gentle.head().limits.request_gap = 2ms;
   gentle.head().unreadable = area;

@@ -37,7 +37,7 @@ TEST(Explain, The_end_of_a_request_names_the_next_point_and_the_key) {
   builder.head().limits.read_registers = 16;
   EXPECT_EQ(first_end(builder),
             "with holding_registers_20 more than 16 in a request (limits: read_registers)");
-  static const Unreadable area[] = {{hr, modbus::Range::of(5, 1)}};
+  static const TableRange area[] = {{hr, modbus::Range::of(5, 1)}};
   builder.head().unreadable = area;
   EXPECT_EQ(first_end(builder), "unreadable addresses lie before holding_registers_20");
 }

@@ -65,7 +65,7 @@ TEST(Picture, On_request_it_shows_every_table_and_links_the_points) {
 }
 
 TEST(Picture, What_is_not_read_is_shown_as_such) {
-  static const Unreadable area[] = {{hr, Range::of(3, 2)}};
+  static const TableRange area[] = {{hr, Range::of(3, 2)}};
   auto builder = MapBuilder().many(hr, 0, 1).add(hr, "command", 1, codec::Type::UINT,
                                                  [](Point& point) { point.access = Access::write; });
   builder.head().unreadable = area;

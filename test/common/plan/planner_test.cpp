@@ -169,7 +169,7 @@ TEST(Planner, A_register_of_which_one_bit_can_only_be_written_is_read_for_the_ot
 }
 
 TEST(Planner, What_the_map_calls_unreadable_is_never_read_across) {
-  static const Unreadable area[] = {{hr, modbus::Range::of(2, 2)}};
+  static const TableRange area[] = {{hr, modbus::Range::of(2, 2)}};
   auto builder = registers({0, 1, 5, 6}, true);
   EXPECT_THAT(plan(builder), ElementsAre("0+7"));
   builder.head().unreadable = area;
@@ -178,13 +178,47 @@ TEST(Planner, What_the_map_calls_unreadable_is_never_read_across) {
 }
 
 TEST(Planner, A_point_that_the_map_calls_unreadable_is_not_read) {
-  static const Unreadable area[] = {{hr, modbus::Range::of(1, 1)}};
+  static const TableRange area[] = {{hr, modbus::Range::of(1, 1)}};
   auto builder = registers({0, 1, 2}, true);
   builder.head().unreadable = area;
   EXPECT_THAT(plan(builder), ElementsAre("0+1", "2+1"));
   const auto owned = builder.build();
   EXPECT_EQ(why_not_read(owned->map(), owned->map().points[1]), NotRead::unreadable);
   EXPECT_EQ(why_not_read(owned->map(), owned->map().points[2]), std::nullopt);
+}
+
+TEST(Planner, An_area_that_the_device_gives_whole_is_read_whole_for_any_of_its_points) {
+  static const TableRange areas[] = {{hr, Range::of(2, 6)}, {hr, Range::of(20, 10)}};
+  auto builder = registers({0, 4, 5, 12, 25});
+  builder.head().read_whole = areas;
+  EXPECT_THAT(plan(builder), ElementsAre("0+1", "2+6", "12+1", "20+10"));
+  const auto owned = builder.build();
+  const Planner planner(owned->map());
+  const std::uint32_t only[] = {2};  // as with --points
+  const auto spans = planner.plan(only);
+  ASSERT_EQ(spans.size(), 1U);
+  EXPECT_EQ(spans[0].range, Range::of(2, 6));
+  EXPECT_THAT(holes(spans[0], owned->map()), IsEmpty());
+}
+
+TEST(Planner, A_point_that_reaches_into_two_such_areas_asks_for_both) {
+  static const TableRange areas[] = {{hr, Range::of(0, 4)}, {hr, Range::of(5, 4)}, {ir, Range::of(0, 9)}};
+  auto builder = MapBuilder().add(hr, "wide", 3, Type::LREAL);
+  builder.head().read_whole = areas;
+  EXPECT_THAT(plan(builder), ElementsAre("0+9"));
+}
+
+TEST(Planner, A_request_that_is_rejected_is_not_parted_inside_such_an_area) {
+  static const TableRange areas[] = {{hr, Range::of(2, 6)}};
+  auto builder = registers({1, 2, 7, 8, 9}, true);
+  builder.head().read_whole = areas;
+  const auto owned = builder.build();
+  const auto group = make_read_plan(owned->map());
+  ASSERT_EQ(group.front().spans.size(), 1U);
+  const Split parts = split(group.front().spans.front(), owned->map());
+  ASSERT_EQ(parts.pieces.size(), 2U);
+  EXPECT_EQ(parts.pieces[0].range, Range::of(1, 1));
+  EXPECT_EQ(parts.pieces[1].range, Range::of(2, 8));
 }
 
 TEST(Planner, A_point_that_fits_into_no_reply_is_not_read) {
@@ -228,7 +262,7 @@ TEST(Planner, A_subset_of_the_points_is_planned_by_itself) {
 TEST(Planner, A_request_that_contains_a_refused_range_is_not_made) {
   const auto owned = registers({0, 1, 2, 3}).build();
   const Planner planner(owned->map());
-  const std::vector<Unreadable> refused{{hr, modbus::Range::of(1, 2)}, {ir, modbus::Range::of(2, 1)}};
+  const std::vector<TableRange> refused{{hr, modbus::Range::of(1, 2)}, {ir, modbus::Range::of(2, 1)}};
   const auto spans = planner.plan(planner.groups().front().points, refused);
   ASSERT_EQ(spans.size(), 2U);
   EXPECT_EQ(spans[0].range, modbus::Range::of(0, 2));
@@ -238,7 +272,7 @@ TEST(Planner, A_request_that_contains_a_refused_range_is_not_made) {
 TEST(Planner, A_refused_range_keeps_points_apart_but_leaves_none_out) {
   const auto owned = registers({0, 1, 2}).build();
   const Planner planner(owned->map());
-  const std::vector<Unreadable> refused{{hr, modbus::Range::of(1, 1)}};
+  const std::vector<TableRange> refused{{hr, modbus::Range::of(1, 1)}};
   const auto spans = planner.plan(planner.groups().front().points, refused);
   ASSERT_EQ(spans.size(), 3U);
   EXPECT_EQ(spans[1].range, modbus::Range::of(1, 1));

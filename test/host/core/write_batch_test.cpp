@@ -159,6 +159,16 @@ TEST_F(WriteExchangeTest, A_bit_keeps_the_other_bits_of_its_register) {
   EXPECT_EQ(holding(7), 0x1230);
 }
 
+TEST_F(WriteExchangeTest, An_area_that_the_device_gives_whole_is_read_whole_before_a_byte_is_written) {
+  static const TableRange area[] = {{Table::holding_registers, modbus::Range::of(5, 4)}};
+  device.values[{Table::holding_registers, 7}] = 0x1234;
+  auto builder = MapBuilder().holding("a", 7, fakes::half(Type::USINT, Half::high));
+  builder.head().read_whole = area;
+  ASSERT_TRUE(write(builder, {0xAB00}));
+  EXPECT_THAT(device.requests, ElementsAre("read holding_registers 5+4", "write register 7"));
+  EXPECT_EQ(holding(7), 0xAB34);
+}
+
 TEST_F(WriteExchangeTest, A_device_with_mask_write_needs_no_read_for_a_byte) {
   device.values[{Table::holding_registers, 7}] = 0x1234;
   auto builder = MapBuilder().holding("a", 7, fakes::half(Type::USINT, Half::low));

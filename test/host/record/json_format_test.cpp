@@ -85,7 +85,7 @@ TEST(JsonFormat, A_text_of_the_device_that_is_not_UTF_8_is_in_the_registers) {
   EXPECT_EQ(json_format()->value(some_moment(), map->map().points[0], {&registers, 1}, {},
                                  PointQuality::State::good),
             json_when +
-                "\"point\":\"text\",\"value\":\"A\xEF\xBF\xBD\",\"quality\":\"good\",\"u\":0.000000,"
+                "\"point\":\"text\",\"value\":\"A\\\\xff\",\"quality\":\"good\",\"u\":0.000000,"
                 "\"registers\":[16895]}\n");
 }
 

@@ -57,7 +57,7 @@ TEST_F(RecordHeadTest, Says_how_often_each_point_is_read_and_which_are_not) {
     point.host.rate = 50;
   });
   map.holding("c", 2).head().polling.rate = 4;
-  const Unreadable unreadable[] = {{Table::holding_registers, modbus::Range::of(2, 1)}};
+  const TableRange unreadable[] = {{Table::holding_registers, modbus::Range::of(2, 1)}};
   map.head().unreadable = unreadable;
   record(map, json_format());
   EXPECT_THAT(head().periods, testing::UnorderedElementsAre(Pair("a", 0.25), Pair("b", 0.02)));

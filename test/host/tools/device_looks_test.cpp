@@ -147,7 +147,7 @@ TEST(DeviceLooks, A_function_that_the_device_does_not_have_is_asked_for_once_a_l
 TEST(DeviceLooks, What_the_map_says_cannot_be_read_is_no_failure) {
   MapBuilder builder;
   builder.coil("a", 0).command("horn", 1).holding("odd", 9);
-  const Unreadable hole{Table::holding_registers, modbus::Range::of(9, 1)};
+  const TableRange hole{Table::holding_registers, modbus::Range::of(9, 1)};
   builder.head().unreadable = {&hole, 1};
   Looking looking(builder);
   const Snapshot now = looking.look();

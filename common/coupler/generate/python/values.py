@@ -220,8 +220,9 @@ class Spec:
             return words[0] & self.mask != 0
         if self.type == "STRING":
             data = _bytes(words, self.order)[:self.length].split(b"\0")[0]
-            text = data.decode(self.encoding, "replace")
-            return text.replace("\ufffd", "?") if self.encoding == "ascii" else text
+            if self.encoding == "ascii":
+                return data.decode("ascii", "replace").replace("\ufffd", "?")
+            return data.decode(self.encoding, "backslashreplace")
         raw = self._raw(words)
         if self.scaled:
             gain = self.gain * 10.0 ** power if power >= 0 else self.gain / 10.0 ** -power

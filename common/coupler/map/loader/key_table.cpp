@@ -145,17 +145,16 @@ constexpr Key keys[] = {
     inherited("length", registers, K::integer, "12", "bytes of a STRING")
         .only_for("STRING")
         .needed()
-        .within(1, 2 * modbus::max_read_registers),
+        .within(1, codec::longest_text),
     inherited("encoding", registers, K::choice, "utf-8", "how a STRING is encoded")
         .only_for("STRING")
         .otherwise("utf-8")
         .one_of<codec::Encoding>(),
-    inherited("ignore_byteorder", registers, K::boolean, "true",
-              "a STRING's first character is in the high byte")
+    inherited("ignore_byteorder", registers, K::boolean, "true", "the older name of 'order: AB' of a STRING")
         .only_for("STRING")
         .otherwise("false"),
     project("order", registers, K::choice, "ABCD",
-            "order of the bytes, A the most significant; AB or BA for one register")
+            "order of the bytes, A the most significant; AB or BA for one register and for a STRING")
         .one_of<codec::Order>(),
     project("bit", registers, K::integer, "3", "which bit of the register a BOOL is")
         .only_for("BOOL")
@@ -262,6 +261,9 @@ constexpr Key keys[] = {
         .one_of<Verify>(),
     project("unreadable", S::map, K::section, "[{table: coils, from: 8, to: 15}]",
             "addresses that the device refuses")
+        .lists(S::area),
+    project("read_whole", S::map, K::section, "[{table: input_registers, from: 8, to: 15}]",
+            "addresses that the device gives in one piece only")
         .lists(S::area),
     project("$schema", S::map, K::text, "map.schema.json", "in a JSON file: the schema, for editors"),
     project("table", S::area, K::choice, "coils", "the area's table").needed().one_of<Table>(),

@@ -167,11 +167,14 @@ std::optional<MapLayout> read_map(const Entry& file, const MapSource& source, Pl
   check_edges(points, sim, context);
   check_exponents(points, context);
   check_unreadable(unreadable, points, head.limits, context);
+  const Areas whole = read_areas(top, "read_whole", defaults.addressing, context);
+  check_whole_areas(whole, unreadable, points, head.limits, context);
   check_broadcast(top, points, head, context);
   check_reserved(reserved, points, context);
   head.security = read_security(top, points, head.connection.port, context);
   if (problems.has_errors()) return std::nullopt;
-  head.unreadable = map.keep(sorted_unreadable(unreadable));
+  head.unreadable = map.keep(by_place(unreadable));
+  head.read_whole = map.keep(by_place(whole));
   return finish(head, points, sim, source.text, defaults.addressing, map);
 }
 

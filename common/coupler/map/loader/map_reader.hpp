@@ -21,7 +21,7 @@ namespace coupler::loader {
 Areas read_areas(const Reader& top, std::string_view key, Addressing addressing, const Context& context);
 
 /// Returns the areas as the model has them, sorted by table and address.
-std::vector<Unreadable> sorted_unreadable(const Areas& areas);
+std::vector<TableRange> by_place(const Areas& areas);
 
 /// Reads what the top of the file says about the coupler, and not about its points. `usual_line` is `serial:`
 /// of the map's preset, without a device, or nullptr.

@@ -137,10 +137,10 @@ Areas read_areas(const Reader& top, std::string_view key, Addressing addressing,
   return areas;
 }
 
-std::vector<Unreadable> sorted_unreadable(const Areas& areas) {
-  std::vector<Unreadable> sorted;
+std::vector<TableRange> by_place(const Areas& areas) {
+  std::vector<TableRange> sorted;
   for (const Area& area : areas) sorted.push_back({area.table, area.range});
-  std::sort(sorted.begin(), sorted.end(), [](const Unreadable& a, const Unreadable& b) {
+  std::sort(sorted.begin(), sorted.end(), [](const TableRange& a, const TableRange& b) {
     return std::tuple(index(a.table), a.range.start()) < std::tuple(index(b.table), b.range.start());
   });
   return sorted;

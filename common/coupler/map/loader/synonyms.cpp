@@ -149,6 +149,10 @@ constexpr std::string_view little_endian =
 constexpr std::string_view swapped =
     "write CDAB if the registers are swapped, BADC if the bytes of each register are";
 
+constexpr std::string_view of_halves =
+    "no order swaps registers within the halves of 64 bits only; map each half as a point of 32 bits with an "
+    "order of its own, and join them in your program";
+
 constexpr ChoiceSynonym choices[] = {
     {"access", "r", "did you mean 'read'?"},
     {"access", "ro", "did you mean 'read'?"},
@@ -175,6 +179,14 @@ constexpr ChoiceSynonym choices[] = {
     {"order", "swapped", swapped},
     {"order", "wordswap", "did you mean 'CDAB'?"},
     {"order", "byteswap", "did you mean 'BADC'?"},
+    {"order", "abcdefgh", "write ABCD: a value of 64 bits has the names of one of 32 bits"},
+    {"order", "ghefcdab", "write CDAB: a value of 64 bits has the names of one of 32 bits"},
+    {"order", "badcfehg", "write BADC: a value of 64 bits has the names of one of 32 bits"},
+    {"order", "hgfedcba", "write DCBA: a value of 64 bits has the names of one of 32 bits"},
+    {"order", "cdabghef", of_halves},
+    {"order", "efghabcd", of_halves},
+    {"order", "dcbahgfe", of_halves},
+    {"order", "fehgbadc", of_halves},
     {"bias", "up", "did you mean 'pull_up'?"},
     {"bias", "down", "did you mean 'pull_down'?"},
     {"addressing", "0", "did you mean 'zero_based'?"},

@@ -62,9 +62,10 @@ void check_type_keys(const Reader& reader, const Entry& point, Type type, const 
 bool check_order(const Entry& order, Type type, const Context& context) {
   const bool one_register = codec::width(type) <= 16;
   const bool two_letters = order.text.size() == 2;
-  if (is_text(type)) {
-    context.problems.error(order.key_at, "'order' does not apply to STRING",
-                           "write 'ignore_byteorder: true' if its first character is in the high byte");
+  if (is_text(type) && !two_letters) {
+    context.problems.error(
+        order.at, fmt::format("the order of a STRING is AB or BA, not {}", order.text),
+        "write AB if the first character of a register is in its high byte, BA if it is in its low byte");
   } else if (one_register && !two_letters) {
     context.problems.error(
         order.at, fmt::format("{} has one register, 'order: {}' is for more", to_string(type), order.text),
@@ -92,10 +93,18 @@ void read_order(const Reader& reader, Order map_order, Format& format, const Con
 }
 
 void read_text_order(const Reader& reader, Format& format, const Context& context) {
-  if (const Entry* order = reader.find("order")) check_order(*order, format.type, context);
   bool ignore_byteorder = false;
   reader.boolean("ignore_byteorder", ignore_byteorder);
   format.order = ignore_byteorder ? Order::ABCD : Order::BADC;
+  const std::size_t errors = context.problems.errors();
+  Order own = format.order;
+  reader.choice("order", own);
+  const Entry* order = reader.find("order");
+  if (order == nullptr || context.problems.errors() > errors || !check_order(*order, format.type, context))
+    return;
+  if (reader.has("ignore_byteorder") && own != format.order)
+    reader.refuse("ignore_byteorder", "'ignore_byteorder' says another order than 'order'", "remove it");
+  format.order = own;
 }
 
 constexpr std::string_view scale_value = "a number other than 0, or a map of 'gain' and 'offset'";

@@ -109,7 +109,7 @@ class Link {
   Result<modbus::ScheduleReply> schedule(const modbus::ScheduleRequest& request);
   /// Reads, only to see whether the device answers. An exception is an answer, unless it says that the unit
   /// is away.
-  Result<> ask(const Unreadable& place);
+  Result<> ask(const TableRange& place);
   /// Does the same with the first readable point; if there is none, with the first point; in a map without
   /// points, with coil 0.
   Result<> keep_alive(const Map& map);

@@ -7,6 +7,7 @@
 #include "coupler/map/functions.hpp"
 #include "coupler/modbus/file_record.hpp"
 #include "coupler/modbus/limits.hpp"
+#include "coupler/plan/read_span.hpp"
 
 namespace coupler::host {
 namespace {
@@ -42,7 +43,7 @@ Result<modbus::ScheduleReply> Link::schedule(const modbus::ScheduleRequest& requ
   return *parsed;
 }
 
-Result<> Link::ask(const Unreadable& place) {
+Result<> Link::ask(const TableRange& place) {
   std::array<std::uint16_t, modbus::max_read_bits> ignored;
   Result<> answer = read(place.table, place.range, ignored.data());
   if (answer || (exception_in(answer.error()) != nullptr && !is_unit_away(answer.error()))) return {};
@@ -53,7 +54,7 @@ Result<> Link::keep_alive(const Map& map) {
   const auto found = std::find_if(map.points.begin(), map.points.end(), is_readable);
   const Point* const point = found == map.points.end() ? map.points.begin() : found;
   return map.points.empty() ? ask({Table::coils, modbus::Range::of(0, 1)})
-                            : ask({point->table, read_range(*point)});
+                            : ask({point->table, plan::read_extent(map, *point)});
 }
 
 }  // namespace coupler::host

@@ -194,8 +194,8 @@ std::vector<std::uint32_t> PollCycle::rejected(Time now) { return part(only_look
 /// Asks for current() in parts from now on. What is alone is given up, or stays in the cycle.
 std::vector<std::uint32_t> PollCycle::part(bool keeps_alone, Time now) {
   Group& group = groups_[current_];
-  const Unreadable whole{current().table, current().range};
-  const auto is_whole = [&](const Unreadable& known) {
+  const TableRange whole{current().table, current().range};
+  const auto is_whole = [&](const TableRange& known) {
     return known.table == whole.table && known.range == whole.range;
   };
   if (std::none_of(rejected_ranges_.begin(), rejected_ranges_.end(), is_whole))
@@ -338,9 +338,9 @@ void PollCycle::join_parts(Group& group) {
 /// the parts is the cause, or, without a hole, the length of the request. Parts that need not be apart are
 /// joined again in the next cycle.
 void PollCycle::learn(Group& group) {
-  const std::vector<Unreadable> all = rejected_ranges_;
-  const auto holds_smaller = [&all](const Unreadable& whole) {
-    return std::any_of(all.begin(), all.end(), [&](const Unreadable& other) {
+  const std::vector<TableRange> all = rejected_ranges_;
+  const auto holds_smaller = [&all](const TableRange& whole) {
+    return std::any_of(all.begin(), all.end(), [&](const TableRange& other) {
       return other.table == whole.table && other.range != whole.range && whole.range.contains(other.range);
     });
   };

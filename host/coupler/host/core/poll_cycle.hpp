@@ -129,7 +129,7 @@ class PollCycle {
   };
   /// A rejected request, and the parts that took its place.
   struct Parted {
-    Unreadable whole;
+    TableRange whole;
     std::optional<modbus::Range> hole;  ///< between the parts
   };
   struct Group {
@@ -181,7 +181,7 @@ class PollCycle {
   std::size_t current_ = 0;
   std::uint64_t requests_ = 0;
   bool others_first_ = false;                ///< a cycle has ended, so the rates that wait get a request each
-  std::vector<Unreadable> rejected_ranges_;  ///< no request for several points contains one of these
+  std::vector<TableRange> rejected_ranges_;  ///< no request for several points contains one of these
   std::vector<RejectedRange> findings_;
   UnansweredReads aside_;
   std::vector<ReadSpan> deferred_;  ///< not sent until another request is answered

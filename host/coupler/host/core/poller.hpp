@@ -47,10 +47,10 @@ class Poller {
   void ended_connection() { cycle_.ended_connection(); }
   bool is_suspected() const { return cycle_.is_suspected(); }
   void acquit() { cycle_.acquit(); }
-  Unreadable current() const { return {cycle_.current().table, cycle_.current().range}; }
+  TableRange current() const { return {cycle_.current().table, cycle_.current().range}; }
   void set_aside(const Error& error);
   /// The range that was answered last over any connection; nullopt if there is none.
-  const std::optional<Unreadable>& last_answered() const { return answered_; }
+  const std::optional<TableRange>& last_answered() const { return answered_; }
 
   /// Returns whether a cycle has ended since the last call.
   bool take_ended_cycle() { return std::exchange(has_ended_cycle_, false); }
@@ -81,7 +81,7 @@ class Poller {
   Sink& sink_;
   PollCycle cycle_;
   BitChanges told_;
-  std::optional<Unreadable> answered_;
+  std::optional<TableRange> answered_;
   bool has_ended_cycle_ = false;
   bool is_node_ = false;  ///< a node knows every function, so exception 01 is about rights
   ReadSpan rest_{Table::coils, modbus::Range::of(0, 1), {}};  ///< a member, so that its memory is used again

@@ -7,10 +7,10 @@ namespace coupler::host {
 namespace {
 
 auto same_as(const plan::ReadSpan& span) {
-  return [&span](const Unreadable& place) { return place.table == span.table && place.range == span.range; };
+  return [&span](const TableRange& place) { return place.table == span.table && place.range == span.range; };
 }
 
-void remove(std::vector<Unreadable>& places, const plan::ReadSpan& span) {
+void remove(std::vector<TableRange>& places, const plan::ReadSpan& span) {
   places.erase(std::remove_if(places.begin(), places.end(), same_as(span)), places.end());
 }
 
@@ -22,7 +22,7 @@ void UnansweredReads::suspect(const plan::ReadSpan& span) {
 
 bool UnansweredReads::is_suspected(const plan::ReadSpan& span) const {
   return std::any_of(suspects_.begin(), suspects_.end(), same_as(span)) ||
-         std::any_of(guilty_.begin(), guilty_.end(), [&](const Unreadable& whole) {
+         std::any_of(guilty_.begin(), guilty_.end(), [&](const TableRange& whole) {
            return whole.table == span.table && whole.range.contains(span.range);
          });
 }

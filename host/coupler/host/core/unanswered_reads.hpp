@@ -43,14 +43,14 @@ class UnansweredReads {
   /// without them.
   std::vector<std::uint32_t> take_back();
   /// The ranges that no request for several points may contain.
-  const std::vector<Unreadable>& ranges() const { return guilty_; }
+  const std::vector<TableRange>& ranges() const { return guilty_; }
 
  private:
   static constexpr Duration shortest = std::chrono::seconds(10);
   static constexpr Duration longest = std::chrono::minutes(10);
 
   struct Entry {
-    Unreadable place;
+    TableRange place;
     std::vector<std::uint32_t> points;
     Duration pause;
     Time again;
@@ -58,8 +58,8 @@ class UnansweredReads {
   };
   std::vector<Entry>::iterator find(const plan::ReadSpan& span);
 
-  std::vector<Unreadable> suspects_;  ///< requests that ended the connection when they were sent last
-  std::vector<Unreadable> guilty_;
+  std::vector<TableRange> suspects_;  ///< requests that ended the connection when they were sent last
+  std::vector<TableRange> guilty_;
   std::vector<Entry> entries_;
 };
 

@@ -2,9 +2,12 @@
 #include "coupler/host/core/write_batch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 
 #include "coupler/map/functions.hpp"
+#include "coupler/modbus/limits.hpp"
+#include "coupler/plan/read_span.hpp"
 
 namespace coupler::host {
 namespace {
@@ -30,6 +33,17 @@ Result<> write_batch(const WriteBatch& batch, const Map& map, Link& link,
     alone.add(write);
     if (auto one = write_batch(alone, map, link, rejected); !one) return one;
   }
+  return {};
+}
+
+/// Reads the values of the point alone, in a request as large as the device wants it.
+Result<> read_point(const Map& map, const Point& point, Link& link, std::uint16_t* values) {
+  const Range own = read_range(point);
+  const Range extent = plan::read_extent(map, point);
+  if (extent.count() == own.count()) return link.read(point.table, own, values);
+  std::array<std::uint16_t, modbus::max_read_bits> all{};
+  if (auto read = link.read(point.table, extent, all.data()); !read) return read;
+  std::copy_n(&all[own.start() - std::size_t{extent.start()}], own.count(), values);
   return {};
 }
 
@@ -96,8 +110,7 @@ Result<> send(const WriteBatch& batch, const Map& map, Link& link) {
   std::uint16_t before = 0;
   const Point& point = map.points[batch.writes().front().point];
   if (needs_read(map, point))
-    if (auto read = link.read(point.table, read_range(point), &before); !read)
-      return tl::make_unexpected(read.error());
+    if (auto read = read_point(map, point, link, &before); !read) return tl::make_unexpected(read.error());
   const modbus::WriteRequest request = batch.request(before);
   return link.send(request);
 }
@@ -123,9 +136,8 @@ Result<std::vector<RejectedValue>> write_values(const std::vector<Write>& writes
 
 Result<> ReadBack::read(const Write& write, const Map& map, Link& link) {
   const Point& point = map.points[write.point];
-  const modbus::Range where = read_range(point);
-  count_ = where.count();
-  if (auto read = link.read(point.table, where, found_.data()); !read) return read;
+  count_ = read_range(point).count();
+  if (auto read = read_point(map, point, link, found_.data()); !read) return read;
   const auto mask = own_bits(point);
   for (std::size_t i = 0; i < count_; ++i) {
     written_[i] = point.table == Table::coils ? write.bit(i) : write.registers[i] & mask;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/codec/text.hpp"
 #include "coupler/host/ros/device_panel.hpp"
 #include "coupler/host/ros/program.hpp"
 #include "coupler/host/ros/status.hpp"
@@ -146,6 +147,7 @@ void DeviceDriver::on_values(Span<const std::uint32_t> points) {
   bool is_measured = false;  // once, so that the stamps of one read are equal
   for (const std::uint32_t point : points) {
     publishers_[point]->publish(values_.registers(point), values_.stamp(point));
+    if (map_.points[point].format.type == codec::Type::STRING && values_.differs(point)) check_text(point);
     if (!stamped_[point]) continue;
     if (!std::exchange(is_measured, true)) measure_wall();
     stamped_[point]->publish(values_.registers(point), values_.stamp(point));
@@ -157,6 +159,20 @@ void DeviceDriver::on_no_values(Span<const std::uint32_t> points, Time at) {
   for (const std::uint32_t point : points)
     if (!values_.is_usable(point)) renew(point);  // so that subscribers see the value come back
   for (const auto& follower : followers_) follower->sink().on_no_values(points, at);
+}
+
+/// ROS 2's other programs fail on a text that is not UTF-8, so it is published with escapes.
+void DeviceDriver::check_text(std::uint32_t point) {
+  const Point& text = map_.points[point];
+  const auto byte = codec::first_unknown_byte(values_.registers(point), text.format);
+  if (!byte || !odd_texts_.insert(point).second) return;
+  const bool is_ascii = text.format.encoding == codec::Encoding::ascii;
+  log(Level::warning,
+      fmt::format(
+          "the text of {} is not {}: its byte 0x{:02X} is published as '{}'. If its letters are wrong "
+          "in pairs, write 'order: {}'; if the device has Latin-1, write 'encoding: latin-1'",
+          text.name, to_string(text.format.encoding), *byte, is_ascii ? "?" : fmt::format("\\x{:02x}", *byte),
+          codec::bytes_swapped(text.format.order) ? "AB" : "BA"));
 }
 
 void DeviceDriver::renew(std::uint32_t point) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,7 @@ class DeviceDriver : public Sink {
   DeviceThread& driven();
   void start_followers(const Followed& followed);
   void renew(std::uint32_t point);
+  void check_text(std::uint32_t point);
   void measure_wall();
   void refuse(std::optional<std::uint32_t> point, const std::string& what);
 
@@ -92,6 +94,7 @@ class DeviceDriver : public Sink {
   Time status_due_{};
   WriteHandler writes_;
   LogLineLimit refused_lines_;
+  std::set<std::uint32_t> odd_texts_;  ///< points whose text was not in their encoding, which was said
   std::vector<std::shared_ptr<void>> subscriptions_;
 };
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "coupler/host/scan/identification.hpp"
+#include "coupler/host/scan/texts.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/map/printable.hpp"
 
@@ -20,24 +21,42 @@ constexpr std::uint32_t longest_of_singles = 4;
 constexpr std::uint32_t most_bits_in_comment = 32;
 constexpr std::uint32_t most_registers_in_comment = 8;
 
-/// A known value and its place.
+/// What is known to be in some registers.
 struct Named {
   std::string name;
-  Candidate at;
+  Table table;
+  Range range;
+  std::string options;  ///< as point_text() has them
+  std::string comment;
 };
 
-std::vector<Named> place(const std::vector<Match>& matches, std::optional<codec::Order> order) {
+bool is_taken(const std::vector<Named>& named, Table table, Range range) {
+  return std::any_of(named.begin(), named.end(),
+                     [&](const Named& other) { return other.table == table && other.range.overlaps(range); });
+}
+
+/// Returns whether the order of the device gives the candidate already.
+bool is_given(const Candidate& candidate, std::optional<codec::Order> order) {
+  const std::vector<Candidate> alone{candidate};
+  return order && choose(alone, order) != nullptr;
+}
+
+std::vector<Named> place(const Findings& findings, const std::vector<Match>& matches,
+                         std::optional<codec::Order> order) {
   std::vector<Named> named;
   for (const Match& match : matches) {
     const Candidate* best = choose(match.candidates, order);
     if (best == nullptr) best = choose(match.candidates, std::nullopt);
-    const auto is_taken = [best](const Named& other) {
-      return other.at.table == best->table && other.at.range.overlaps(best->range);
-    };
-    if (best == nullptr || std::any_of(named.begin(), named.end(), is_taken)) continue;
+    if (best == nullptr || is_taken(named, best->table, best->range)) continue;
     const auto number = static_cast<std::size_t>(&match - matches.data()) + 1;
-    named.push_back({match.known.name.empty() ? fmt::format("value_{}", number) : match.known.name, *best});
+    named.push_back({match.known.name.empty() ? fmt::format("value_{}", number) : match.known.name,
+                     best->table, best->range, point_text(*best, !is_given(*best, order)),
+                     value_text(*best)});
   }
+  for (const FoundText& text : find_texts(findings.tables))
+    if (!is_taken(named, text.table, text.range))
+      named.push_back({fmt::format("{}_text_{}", to_string(text.table), text.range.start()), text.table,
+                       text.range, point_text(text), value_text(text)});
   return named;
 }
 
@@ -53,7 +72,7 @@ std::string values_text(const TableFindings& table, Range range) {
 class Writer {
  public:
   Writer(const Findings& findings, const std::vector<Match>& matches)
-      : findings_(findings), order_(common_order(matches)), named_(place(matches, order_)) {}
+      : findings_(findings), order_(common_order(matches)), named_(place(findings, matches, order_)) {}
 
   std::string write(const Connection& connection) {
     head(connection);
@@ -113,9 +132,9 @@ class Writer {
       std::uint32_t start = range.start();
       for (const Named* next = first_named(table, range, start); next != nullptr;
            next = first_named(table, range, start)) {
-        fill(table, start, next->at.range.start());
+        fill(table, start, next->range.start());
         named(table, *next);
-        start = next->at.range.end();
+        start = next->range.end();
       }
       fill(table, start, range.end());
     }
@@ -124,23 +143,17 @@ class Writer {
   const Named* first_named(const TableFindings& table, Range within, std::uint32_t from) const {
     const Named* first = nullptr;
     for (const Named& named : named_) {
-      const bool is_here = named.at.table == table.table() && within.contains(named.at.range) &&
-                           named.at.range.start() >= from;
-      if (is_here && (first == nullptr || named.at.range.start() < first->at.range.start())) first = &named;
+      const bool is_here =
+          named.table == table.table() && within.contains(named.range) && named.range.start() >= from;
+      if (is_here && (first == nullptr || named.range.start() < first->range.start())) first = &named;
     }
     return first;
   }
 
   void named(const TableFindings& table, const Named& named) {
-    std::string options = point_text(named.at, !order_ || !is_given(named.at));
+    std::string options = named.options;
     options.insert(options.size() - 1, ", access: read");
-    line(table, named.at.range, named.name, options, value_text(named.at));
-  }
-
-  /// Returns whether the device's order gives it already.
-  bool is_given(const Candidate& candidate) const {
-    const std::vector<Candidate> alone{candidate};
-    return choose(alone, order_) != nullptr;
+    line(table, named.range, named.name, options, named.comment);
   }
 
   /// Points for [start, end).

@@ -135,7 +135,7 @@ std::string request_of(const Map& map, Table table, std::string_view order, cons
       map.connection.unit, order, register_of(table), literal(map.name));
   const bool joins = holds_bits(table) ? map.polling.discrete_continuous : map.polling.register_continuous;
   const bool has_holes = std::any_of(map.unreadable.begin(), map.unreadable.end(),
-                                     [table](const Unreadable& area) { return area.table == table; });
+                                     [table](const TableRange& area) { return area.table == table; });
   const unsigned gap = holds_bits(table) ? map.polling.discrete_gap : map.polling.register_gap;
   const unsigned most = holds_bits(table) ? modbus::max_read_bits : modbus::max_read_registers;
   if (joins && !has_holes && gap > 1)

@@ -152,7 +152,6 @@ Json bounds_rule(Type type) {
 }
 
 Json order_rule(Type type) {
-  if (type == Type::STRING) return only("order", false);
   Json orders = Json::array();
   for (const auto& each : enumeration_of<codec::Order>.words)
     if ((each.word.size() == 2) == (codec::width(type) <= 16)) orders.push_back(each.word);

@@ -171,13 +171,13 @@ TEST(HostOptions, What_is_only_written_may_be_longer_than_what_the_device_sends)
   EXPECT_EQ(recipe->count, 20);
 }
 
-TEST(Unreadable, Parts_of_a_register_are_there_if_the_device_writes_them_by_itself) {
+TEST(TableRange, Parts_of_a_register_are_there_if_the_device_writes_them_by_itself) {
   load_clean(map_of("holding_registers", "a: {address: 0, type: BOOL, bit: 0, access: write}",
                     "unreadable: [{table: holding_registers, from: 0, to: 0}]\n"
                     "limits: {mask_write: true}\n"));
 }
 
-TEST(Unreadable, Areas_are_sorted_and_in_the_addressing_of_the_map) {
+TEST(TableRange, Areas_are_sorted_and_in_the_addressing_of_the_map) {
   const MapPtr map = load_clean(map_of("coils", "p: 1",
                                        "addressing: modicon\n"
                                        "unreadable: [{table: holding_registers, from: 40011, to: 40020},"
