@@ -74,6 +74,7 @@ TRAFFIC = [
     (read(3, 30, 7), ["label", "plain"], ['label: "Anlage"', 'plain: "Kühler"']),
     *((write(18, swap_bytes(struct.pack(">d", number))), [f"long_badc: {text}"], ["long_badc"])
       for number, text in DOUBLES.items()),
+    (b"\x06" + registers(41, 0xAB55), ["across: 0x0055", "field: 11"], ["across: 0x0055", "field: 11"]),
     (b"\x06" + registers(40, 7), ["mode: auto (7)"], ["mode: auto (7)"]),
     (b"\x06" + registers(40, 0xFFFF), ["mode: fault (-1)"], ["mode: fault (-1)"]),
     (b"\x06" + registers(40, 3), ["mode: 3"], ["mode [exception 03]"]),

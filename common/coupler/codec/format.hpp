@@ -135,10 +135,20 @@ struct Format {
   Type type = Type::BOOL;
   Order order = Order::ABCD;  ///< ABCD or BADC for values of at most one register
   Half half = Half::high;     ///< 8-bit types
-  std::uint8_t bit = 0;       ///< BOOL in a register: 0 … 15, counted after the byte order is undone
-  std::uint16_t length = 0;   ///< STRING: bytes, 1 … longest_text
+  /// BOOL in a register, and a number in some bits: the first one, 0 … 15, counted after the byte order is
+  /// undone.
+  std::uint8_t bit = 0;
+  std::uint16_t length = 0;            ///< STRING: bytes, 1 … longest_text
   Encoding encoding = Encoding::utf8;  ///< STRING
+  /// BYTE, USINT, WORD, UINT: the value has so many bits of its register, from `bit` on; 0: it has them all.
+  std::uint8_t bits = 0;
 };
+
+/// The bits of a BOOL, or of a number that has some bits of its register; 0: it has a byte, or registers.
+constexpr unsigned field_bits(const Format& format) { return format.type == Type::BOOL ? 1U : format.bits; }
+
+/// The largest value in so many bits.
+constexpr std::uint16_t largest_in(unsigned bits) { return static_cast<std::uint16_t>((1U << bits) - 1); }
 
 /// A STRING stores its first character in the low byte, as BADC says, unless its point has `order: AB` or the
 /// older `ignore_byteorder: true`, whatever the global keys say.
@@ -162,8 +172,8 @@ constexpr std::uint16_t registers(const Format& format) {
 /// registers.
 constexpr std::uint16_t mask(const Format& format) {
   const bool swapped = bytes_swapped(format.order);
-  if (format.type == Type::BOOL) {
-    const auto m = static_cast<std::uint16_t>(1U << format.bit);
+  if (field_bits(format) != 0) {
+    const auto m = static_cast<std::uint16_t>(largest_in(field_bits(format)) << format.bit);
     return swapped ? swap_bytes(m) : m;
   }
   if (width(format.type) == 8) return (format.half == Half::high) != swapped ? 0xFF00 : 0x00FF;

@@ -73,38 +73,63 @@ void encode(T value, Order order, std::uint16_t* registers) {
   }
 }
 
-/// The byte (or, for BOOL, the bit as 0 or 1) that a partial format selects from its register.
-constexpr std::uint8_t decode_part(std::uint16_t word, const Format& format) {
-  const std::uint16_t m = mask(format);
-  if (format.type == Type::BOOL) return (word & m) != 0 ? 1 : 0;
-  return static_cast<std::uint8_t>(m == 0xFF00 ? word >> 8 : word & 0xFF);
+/// The byte or the bits that a partial format selects from its register; of a BOOL, 0 or 1.
+constexpr std::uint16_t decode_part(std::uint16_t word, const Format& format) {
+  if (const unsigned bits = field_bits(format); bits != 0) {
+    if (bytes_swapped(format.order)) word = swap_bytes(word);
+    return static_cast<std::uint16_t>((word >> format.bit) & largest_in(bits));
+  }
+  return static_cast<std::uint16_t>(mask(format) == 0xFF00 ? word >> 8 : word & 0xFF);
 }
 
-/// The value in its place in the register, all other bits zero: combine with `(word & ~mask(format))`.
-constexpr std::uint16_t encode_part(std::uint8_t value, const Format& format) {
-  const std::uint16_t m = mask(format);
-  if (format.type == Type::BOOL) return value != 0 ? m : std::uint16_t{0};
-  return m == 0xFF00 ? static_cast<std::uint16_t>(value << 8) : std::uint16_t{value};
+/// The value in its place in the register, all other bits zero: combine with `(word & ~mask(format))`. The
+/// part has room for it.
+constexpr std::uint16_t encode_part(std::uint16_t value, const Format& format) {
+  if (field_bits(format) != 0) {
+    if (format.type == Type::BOOL) value = value != 0 ? 1 : 0;
+    const auto word = static_cast<std::uint16_t>(value << format.bit);
+    return bytes_swapped(format.order) ? swap_bytes(word) : word;
+  }
+  return mask(format) == 0xFF00 ? static_cast<std::uint16_t>(value << 8) : value;
 }
+
+/// Returns whether the bits that the format has are enough for a value of its type.
+template <class T>
+constexpr bool has_room(T value, const Format& format) {
+  if constexpr (std::is_unsigned_v<T> && sizeof(T) <= 2)
+    return format.bits == 0 || value <= largest_in(format.bits);
+  else
+    return true;
+}
+
+/// A value of this type may be one of the parts of a register.
+template <class T>
+constexpr bool may_be_partial = std::is_integral_v<T> && sizeof(T) <= 2;
 
 /// The value of a type of any width.
 template <class T>
 T take(const Format& format, const std::uint16_t* registers) {
   if constexpr (sizeof(T) == 1)
     return static_cast<T>(decode_part(registers[0], format));
+  else if constexpr (may_be_partial<T>)
+    return format.bits != 0 ? static_cast<T>(decode_part(registers[0], format))
+                            : decode<T>(registers, format.order);
   else
     return decode<T>(registers, format.order);
 }
 
-/// Writes a value of any width; the other bits of a shared register stay.
+/// Writes a value of any width, for which the format has room; the other bits of a shared register stay.
 template <class T>
 void put(T value, const Format& format, std::uint16_t* registers) {
-  if constexpr (sizeof(T) == 1) {
-    const auto kept = static_cast<std::uint16_t>(registers[0] & ~mask(format));
-    registers[0] = static_cast<std::uint16_t>(kept | encode_part(static_cast<std::uint8_t>(value), format));
-  } else {
-    encode(value, format.order, registers);
+  if constexpr (may_be_partial<T>) {
+    if (sizeof(T) == 1 || format.bits != 0) {
+      using U = typename detail::Unsigned<sizeof(T)>::type;
+      const auto kept = static_cast<std::uint16_t>(registers[0] & ~mask(format));
+      registers[0] = static_cast<std::uint16_t>(kept | encode_part(static_cast<U>(value), format));
+      return;
+    }
   }
+  if constexpr (sizeof(T) > 1) encode(value, format.order, registers);
 }
 
 /// Calls f with a zero of the C++ type that stands for the IEC type (all but STRING).

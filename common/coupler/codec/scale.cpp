@@ -12,16 +12,23 @@ namespace {
 
 template <class T>
 constexpr auto least = static_cast<double>(std::numeric_limits<T>::lowest());
-template <class T>
-constexpr auto most = static_cast<double>(std::numeric_limits<T>::max());
 
-/// The ends of a 64-bit type are not doubles: `most` is then the first number beyond, which `<` excludes.
+/// The largest value of the type, or that the format has bits for.
 template <class T>
-bool fits(double raw) {
+T largest(const Format& format) {
+  if constexpr (may_be_partial<T>)
+    if (format.bits != 0) return static_cast<T>(largest_in(format.bits));
+  return std::numeric_limits<T>::max();
+}
+
+/// The ends of a 64-bit type are not doubles: `largest` is then the first number beyond, which `<` excludes.
+template <class T>
+bool fits(double raw, const Format& format) {
+  const auto most = static_cast<double>(largest<T>(format));
   if constexpr (std::is_floating_point_v<T>)
-    return raw >= least<T> && raw <= most<T>;
+    return raw >= least<T> && raw <= most;
   else
-    return (raw > least<T> - 0.5 || raw == least<T>)&&raw < most<T> + 0.5;
+    return (raw > least<T> - 0.5 || raw == least<T>)&&raw < most + 0.5;
 }
 
 /// Half away from zero. `raw` fits.
@@ -54,7 +61,7 @@ ScaleError encode_published(double value, const Format& format, const Scale& sca
   return with_number(format.type, [&](auto zero) {
     using T = decltype(zero);
     const double raw = raw_of(value, scale);
-    if (!fits<T>(raw)) return ScaleError::out_of_range;
+    if (!fits<T>(raw, format)) return ScaleError::out_of_range;
     put(rounded<T>(raw), format, registers);
     return ScaleError::none;
   });
@@ -63,9 +70,9 @@ ScaleError encode_published(double value, const Format& format, const Scale& sca
 void encode_nearest(double value, const Format& format, const Scale& scale, std::uint16_t* registers) {
   with_number(format.type, [&](auto zero) {
     using T = decltype(zero);
-    using Ends = std::numeric_limits<T>;
     const double raw = raw_of(value, scale);
-    put(fits<T>(raw) ? rounded<T>(raw) : raw < 0 ? Ends::lowest() : Ends::max(), format, registers);
+    const T end = raw < 0 ? std::numeric_limits<T>::lowest() : largest<T>(format);
+    put(fits<T>(raw, format) ? rounded<T>(raw) : end, format, registers);
   });
 }
 
@@ -75,11 +82,11 @@ double nearest_published(double value, const Format& format, const Scale& scale)
   return published(registers.data(), format, scale);
 }
 
-PublishedRange published_range(Type type, const Scale& scale) {
-  return with_number(type, [&](auto zero) {
+PublishedRange published_range(const Format& format, const Scale& scale) {
+  return with_number(format.type, [&](auto zero) {
     using T = decltype(zero);
     const double a = least<T> * scale.gain + scale.offset;
-    const double b = most<T> * scale.gain + scale.offset;
+    const double b = static_cast<double>(largest<T>(format)) * scale.gain + scale.offset;
     return a < b ? PublishedRange{a, b} : PublishedRange{b, a};
   });
 }

@@ -46,6 +46,7 @@ struct PublishedRange {
   double least;
   double most;
 };
-PublishedRange published_range(Type type, const Scale& scale);
+/// `format`: of its own, a Type will do: `published_range({Type::INT}, scale)`.
+PublishedRange published_range(const Format& format, const Scale& scale);
 
 }  // namespace coupler::codec

@@ -88,6 +88,9 @@ Result put_number(const Value& value, const Format& format, std::uint16_t* regis
               return tl::make_unexpected(
                   fmt::format("{} is not a whole number, as {} needs", v, to_string(format.type)));
           if (!fits<To>(v)) return out_of_range<To>(value, format.type);
+          if (!has_room(converted<To>(v), format))
+            return tl::make_unexpected(fmt::format("{} does not fit into {} bits (0 to {})", to_string(value),
+                                                   format.bits, largest_in(format.bits)));
           put(converted<To>(v), format, registers);
           return {};
         }

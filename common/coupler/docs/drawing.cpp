@@ -112,13 +112,15 @@ Drawing draw_text(const Point& point) {
   return drawing;
 }
 
+/// Its place is drawn as bits, not as a byte.
+bool has_bit_cells(const Point& point) { return codec::field_bits(point.format) != 0; }
+
 /// Returns the points of one kind that share the register of `first`, with the first bit or byte on the left.
 std::vector<const Point*> neighbours(const Map& map, const Point& first) {
   std::vector<const Point*> found;
   for (const Point& point : map.points)
     if (point.table == first.table && point.address == first.address && is_partial(point) &&
-        point.format.order == first.format.order &&
-        codec::width(point.format.type) == codec::width(first.format.type))
+        point.format.order == first.format.order && has_bit_cells(point) == has_bit_cells(first))
       found.push_back(&point);
   std::sort(found.begin(), found.end(), [](const Point* a, const Point* b) {
     return std::tuple(codec::mask(b->format), a->name) < std::tuple(codec::mask(a->format), b->name);
@@ -154,11 +156,14 @@ Drawing draw_parts(const Map& map, const Point& first) {
   const std::uint16_t mask = codec::mask(first.format);
   const bool swapped = codec::bytes_swapped(first.format.order);
   const auto order = codec::order_text(first.format);
-  if (first.format.type == Type::BOOL)
+  if (has_bit_cells(first)) {
+    const std::string set =
+        first.format.type == Type::BOOL ? "on" : fmt::to_string(codec::largest_in(first.format.bits));
     return {fmt::format("Bits of a register, order {}", order),
-            fmt::format("The register is 0x{:04X} when {} is on and nothing else is. In it: {}.", mask,
-                        first.name, list),
+            fmt::format("The register is 0x{:04X} when {} is {} and nothing else is. In it: {}.", mask,
+                        first.name, set, list),
             {{first.address, bit_cells(mask, used, swapped)}}};
+  }
   const auto word = static_cast<std::uint16_t>(mask & 0x1212);
   return {fmt::format("Bytes of a register, order {}", order),
           fmt::format("The register is 0x{:04X} when {} is 0x12. In it: {}.", word, first.name, list),
@@ -174,10 +179,10 @@ std::size_t cell_width(const Drawing& drawing) { return drawing.registers.front(
 
 std::vector<Drawing> drawings_of(const Map& map) {
   std::vector<Drawing> drawings;
-  std::set<std::tuple<codec::Order, unsigned>> seen;  // order and width; that of a STRING is 0
+  std::set<std::tuple<codec::Order, unsigned>> seen;  // order and width; that of a STRING is 0, of bits 1
   for (const Point& point : map.points) {
-    if (holds_bits(point.table) || !seen.emplace(point.format.order, codec::width(point.format.type)).second)
-      continue;
+    const unsigned width = has_bit_cells(point) ? 1 : codec::width(point.format.type);
+    if (holds_bits(point.table) || !seen.emplace(point.format.order, width).second) continue;
     if (point.format.type == Type::STRING)
       drawings.push_back(draw_text(point));
     else

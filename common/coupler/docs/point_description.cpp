@@ -19,6 +19,8 @@ std::string text_of(const Point& point) {
 
 std::string part_of(const Point& point) {
   if (!is_partial(point)) return {};
+  if (const codec::Format& f = point.format; f.bits != 0)
+    return fmt::format("bits {} to {}", f.bit, f.bit + f.bits - 1);
   if (point.format.type == Type::BOOL) return fmt::format("bit {}", point.format.bit);
   return point.format.half == codec::Half::high ? "high byte" : "low byte";
 }

@@ -66,7 +66,7 @@ std::string_view value_name(codec::Type type) {
 
 /// The range of the type, without what is a fault.
 codec::PublishedRange published_range(const Point& point) {
-  const auto [least, most] = codec::published_range(point.format.type, {});
+  const auto [least, most] = codec::published_range(point.format, {});
   const auto published = [&](double raw) { return raw * point.scale.gain + point.scale.offset; };
   const double a = published(std::max(least, point.faults.below));
   const double b = published(std::min(most, point.faults.above));
@@ -166,7 +166,8 @@ std::string range_words(const Point& point) {
     return max == Bounds::no_max ? "" : "up to " + number(max);
   }
   if (limits_values(point)) return number(std::max(min, least)) + " … " + number(std::min(max, most));
-  if (point.scale.present() || point.faults.present()) return number(least) + " … " + number(most);
+  if (point.scale.present() || point.faults.present() || point.format.bits != 0)
+    return number(least) + " … " + number(most);
   return codec::with_number(type, [](auto zero) {
     using Limits = std::numeric_limits<decltype(zero)>;
     return fmt::format("{} … {}", Limits::lowest(), Limits::max());

@@ -60,8 +60,8 @@ std::string value_range(const Point& point) {
   if (type == Type::BOOL || type == Type::CHAR || point.scale.has_exponent()) return {};
   const auto [min, max, nonfinite] = point.bounds;
   const bool bounded = min != Bounds::no_min || max != Bounds::no_max;
-  if (bounded || point.scale.present()) {
-    const auto [least, most] = codec::published_range(type, point.scale);
+  if (bounded || point.scale.present() || point.format.bits != 0) {
+    const auto [least, most] = codec::published_range(point.format, point.scale);
     return fmt::format(", {:g} … {:g}", std::max(least, min), std::min(most, max));
   }
   if (is_float(type)) return {};
@@ -132,6 +132,8 @@ std::string place(const Point& point) {
   std::string out = fmt::format("{} {}", to_string(point.table), point.address);
   if (range(point).count() > 1) out += fmt::format("-{}", range(point).last());
   if (!is_partial(point)) return out;
+  if (const codec::Format& f = point.format; f.bits != 0)
+    return out + fmt::format(", bits {} to {}", f.bit, f.bit + f.bits - 1);
   if (point.format.type == Type::BOOL) return out + fmt::format(", bit {}", point.format.bit);
   return out + (point.format.half == codec::Half::high ? ", high byte" : ", low byte");
 }

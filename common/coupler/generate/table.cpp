@@ -92,11 +92,12 @@ constexpr Map map{{
 std::string format(const codec::Format& format) {
   const codec::Format usual;
   std::string out = fmt::format("{{{}", enumerator(format.type));
-  const bool text = format.length != usual.length || format.encoding != usual.encoding;
+  const bool text = format.length != usual.length || format.encoding != usual.encoding || format.bits != 0;
   const bool part = text || format.half != usual.half || format.bit != usual.bit;
   if (part || format.order != usual.order) out += fmt::format(", {}", enumerator(format.order));
   if (part) out += fmt::format(", {}, {}", enumerator(format.half), format.bit);
   if (text) out += fmt::format(", {}, {}", format.length, enumerator(format.encoding));
+  if (format.bits != 0) out += fmt::format(", {}", format.bits);
   return out + '}';
 }
 

@@ -14,9 +14,10 @@
 namespace coupler {
 namespace {
 
-/// Whole registers first, then halves, then bits.
+/// Whole registers first, then halves, then bits, then numbers in some bits.
 unsigned rank_of_part(const Point& point) {
   if (!is_partial(point)) return 0;
+  if (point.format.bits != 0) return 19U + 16U * point.format.bit + point.format.bits;
   if (point.format.type == codec::Type::BOOL) return 3U + point.format.bit;
   return point.format.half == codec::Half::high ? 1 : 2;
 }
@@ -27,6 +28,8 @@ auto sort_key(const Point& point) {
 
 std::string part(const Point& point) {
   if (!is_partial(point)) return "-";
+  if (const codec::Format& f = point.format; f.bits != 0)
+    return fmt::format("bits{}-{}", f.bit, f.bit + f.bits - 1);
   if (point.format.type == codec::Type::BOOL) return fmt::format("bit{}", point.format.bit);
   return point.format.half == codec::Half::high ? "high" : "low";
 }

@@ -34,6 +34,7 @@ struct PlainValue {
     return codec::take<T>(point.format, registers);
   }
   static bool encode(T value, const Point& point, std::uint16_t* registers) {
+    if (!codec::has_room(value, point.format)) return false;
     codec::put(value, point.format, registers);
     return true;
   }

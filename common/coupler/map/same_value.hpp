@@ -11,8 +11,8 @@ namespace coupler {
 inline bool same_value(const Point& a, const Point& b) {
   const auto layout = [](const Point& p) {
     const codec::Format& f = p.format;
-    return std::tuple(p.table, p.count, f.type, f.order, f.bit, f.half, f.length, f.encoding, p.scale.gain,
-                      p.scale.offset, p.scale.exponent_of);
+    return std::tuple(p.table, p.count, f.type, f.order, f.bit, f.bits, f.half, f.length, f.encoding,
+                      p.scale.gain, p.scale.offset, p.scale.exponent_of);
   };
   return layout(a) == layout(b);
 }

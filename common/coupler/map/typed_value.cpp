@@ -41,7 +41,7 @@ std::string value_names_text(const Point& point) {
 }  // namespace
 
 std::string encode_scaled(double value, const Point& point, std::uint16_t* registers) {
-  const auto [least, most] = codec::published_range(point.format.type, point.scale);
+  const auto [least, most] = codec::published_range(point.format, point.scale);
   const std::string units = units_of(point);
   const std::string right =
       limits_values(point) ? allowed_text(point) : fmt::format("{:g} to {:g}{}", least, most, units);
@@ -52,6 +52,12 @@ std::string encode_scaled(double value, const Point& point, std::uint16_t* regis
     case codec::ScaleError::none: break;
   }
   return {};
+}
+
+std::string no_room_text(std::uint64_t value, const Point& point) {
+  const unsigned most = codec::largest_in(point.format.bits);
+  return fmt::format("{} does not fit into {} bits; send {}", value, point.format.bits,
+                     limits_values(point) ? allowed_text(point) : fmt::format("0 to {}", most));
 }
 
 std::string encode_string(std::string_view text, const Point& point, std::uint16_t* registers) {

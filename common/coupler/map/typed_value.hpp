@@ -23,6 +23,9 @@ std::string encode_scaled(double value, const Point& point, std::uint16_t* regis
 /// The same for UTF-8 `text` and a STRING.
 std::string encode_string(std::string_view text, const Point& point, std::uint16_t* registers);
 
+/// Why a value does not fit into the bits of its point, and what does.
+std::string no_room_text(std::uint64_t value, const Point& point);
+
 /// Returns what may be written to a number: "0 to 10 bar", "idle (0) or running (1)".
 std::string allowed_text(const Point& point);
 
@@ -34,8 +37,8 @@ std::string forbidden_text(const Point& point, const ForbiddenValue& value);
 template <class T>
 struct TypedValue : PlainValue<T> {
   static std::string encode(T value, const Point& point, std::uint16_t* registers) {
-    (void)PlainValue<T>::encode(value, point, registers);  // takes every value
-    return {};
+    if (PlainValue<T>::encode(value, point, registers)) return {};
+    return no_room_text(static_cast<std::uint64_t>(value), point);  // only an unsigned integer may have none
   }
 };
 

@@ -77,7 +77,10 @@ std::vector<Element> number_elements(const codec::Format& format) {
   if (format.type == codec::Type::BOOL) return {{0}, {codec::mask(format)}};
   return codec::with_number(format.type, [&](auto zero) {
     std::vector<Element> elements;
-    for (const auto value : samples<decltype(zero)>()) {
+    using T = decltype(zero);
+    for (T value : samples<T>()) {
+      if constexpr (codec::may_be_partial<T>)
+        if (format.bits != 0) value = static_cast<T>(value & codec::largest_in(format.bits));
       elements.emplace_back(codec::registers(format));
       codec::put(value, format, elements.back().data());
     }
@@ -85,16 +88,18 @@ std::vector<Element> number_elements(const codec::Format& format) {
   });
 }
 
-std::vector<codec::Value> refused_numbers(codec::Type type) {
+std::vector<codec::Value> refused_numbers(const codec::Format& format) {
+  const codec::Type type = format.type;
   if (type == codec::Type::BOOL) return {};
+  if (format.bits != 0) return {std::int64_t{-1}, std::int64_t{codec::largest_in(format.bits)} + 1};
   return codec::with_number(type, [](auto zero) { return outside<decltype(zero)>(); });
 }
 
 /// Numbers beyond the ends of a scale.
-std::vector<codec::Value> refused_scaled(codec::Type type, const codec::Scale& scale) {
+std::vector<codec::Value> refused_scaled(const codec::Format& format, const codec::Scale& scale) {
   using Double = std::numeric_limits<double>;
   std::vector<codec::Value> values{Double::quiet_NaN(), Double::infinity(), -Double::infinity()};
-  const auto [least, most] = codec::published_range(type, scale);
+  const auto [least, most] = codec::published_range(format, scale);
   const double width = most - least;
   if (most + width <= Double::max() && least - width >= Double::lowest()) {
     values.emplace_back(most + width);
@@ -237,9 +242,9 @@ std::vector<codec::Value> refused_by(const Point& point, std::vector<codec::Valu
   if (point.format.type == codec::Type::STRING)
     values = refused_texts(point.format);
   else if (point.scale.present())
-    values = refused_scaled(point.format.type, point.scale);
+    values = refused_scaled(point.format, point.scale);
   else
-    values = refused_numbers(point.format.type);
+    values = refused_numbers(point.format);
   values.insert(values.end(), beyond.begin(), beyond.end());
   // A scale of a wide type rounds its own ends: what it still takes is no example.
   std::vector<std::uint16_t> registers(codec::registers(point.format));

@@ -40,7 +40,9 @@ std::string format(const Point& point) {
   if (holds_bits(point.table)) return text;
   text += field("order", json_string(codec::order_text(format)));
   if (format.type == Type::BOOL) text += field("bit", std::to_string(format.bit));
-  if (codec::width(format.type) == 8)
+  if (format.bits != 0)
+    text += field("bit", std::to_string(format.bit)) + field("width", std::to_string(format.bits));
+  else if (codec::width(format.type) == 8)
     text += field("offset", format.half == codec::Half::high ? "\"high\"" : "\"low\"");
   if (codec::is_partial(format)) text += field("mask", fmt::format("\"{:04X}\"", codec::mask(format)));
   if (format.type == Type::STRING)

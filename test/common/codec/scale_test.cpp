@@ -83,9 +83,9 @@ TEST(Scale, A_measurement_beyond_the_range_becomes_its_end) {
 }
 
 TEST(Scale, The_published_range_has_the_smaller_end_first) {
-  EXPECT_EQ(published_range(Type::SINT, {1, 0}).least, -128);
-  EXPECT_EQ(published_range(Type::USINT, {-2, 10}).least, -500);
-  EXPECT_EQ(published_range(Type::USINT, {-2, 10}).most, 10);
+  EXPECT_EQ(published_range({Type::SINT}, {1, 0}).least, -128);
+  EXPECT_EQ(published_range({Type::USINT}, {-2, 10}).least, -500);
+  EXPECT_EQ(published_range({Type::USINT}, {-2, 10}).most, 10);
 }
 
 TEST(Scale, The_other_byte_of_a_register_stays) {

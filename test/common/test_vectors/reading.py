@@ -47,6 +47,9 @@ def decode(point, words):
     kind, order = point["type"], point["order"]
     if kind == "BOOL":
         return bool((swap(words[0]) if order == "BA" else words[0]) >> point["bit"] & 1)
+    if "width" in point:
+        number = (swap(words[0]) if order == "BA" else words[0]) >> point["bit"] & (1 << point["width"]) - 1
+        return float(number) * point["scale"]["gain"] + point["scale"]["offset"] if "scale" in point else number
     data = bytes_of(words, order)
     if kind == "STRING":
         return data[:point["length"]].split(b"\0")[0].decode(CODECS[point["encoding"]], "replace").replace("\ufffd", "?")
@@ -68,6 +71,12 @@ def encode(point, value):
         return text(point, value)
     if isinstance(value, float) and not math.isfinite(value):
         raise NoValue
+    if "width" in point:
+        number = raw_number(point, value) if "scale" in point else value
+        if not 0 <= number < 1 << point["width"]:
+            raise NoValue
+        word = number << point["bit"]
+        return [swap(word) if order == "BA" else word]
     data = number_bytes(LETTERS[kind], raw_number(point, value) if "scale" in point else value)
     if len(data) == 1:
         data = data + b"\0" if point["offset"] == "high" else b"\0" + data

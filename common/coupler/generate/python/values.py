@@ -193,10 +193,8 @@ class Spec:
     def _is_invalid(self, words: list[int]) -> bool:
         if not self.invalid:
             return False
-        data = _bytes(words, self.order)
-        if self.mask in (0xFF00, 0x00FF) and self.type != "BOOL":
-            data = bytes([words[0] >> 8 if self.mask == 0xFF00 else words[0] & 0xFF])
-        raw = int.from_bytes(data, "big")  # of a BOOL that of its register
+        is_part = self.mask != 0xFFFF and self.type != "BOOL"  # of a BOOL it is the value of its register
+        raw = self._part(words) if is_part else int.from_bytes(_bytes(words, self.order), "big")
         return any(first <= raw <= last for first, last in self.invalid)
 
     def why_none(self, words: list[int]) -> str:
@@ -234,10 +232,22 @@ class Spec:
         return None if self.names is None else next((name for name in self.names if name == raw), None)
 
     def _raw(self, words: list[int]) -> Any:
-        data = _bytes(words, self.order)
-        if self.mask != 0xFFFF:
-            data = bytes([words[0] >> 8 if self.mask == 0xFF00 else words[0] & 0xFF])
-        return struct.unpack(">" + _LETTERS[self.type], data)[0]
+        letter = ">" + _LETTERS[self.type]
+        part = self.mask != 0xFFFF
+        data = self._part(words).to_bytes(struct.calcsize(letter), "big") if part else _bytes(words, self.order)
+        return struct.unpack(letter, data)[0]
+
+    def _part(self, words: list[int]) -> int:
+        """What stands in the bits of `mask`."""
+        word, mask = _reordered([words[0], self.mask], self.order)
+        return (word & mask) // (mask & -mask)
+
+    def _in_part(self, value: int) -> list[int]:
+        mask = _reordered([self.mask], self.order)[0]
+        most = mask // (mask & -mask)
+        if value > most:
+            self.refuse(f"{value} does not fit into {most.bit_length()} bits (0 to {most})")
+        return _reordered([value * (mask & -mask)], self.order)
 
     def _encode_one(self, value: Any) -> list[int]:
         if self.type == "BOOL":
@@ -249,7 +259,7 @@ class Spec:
         letter, number = _LETTERS[self.type], self._number(value)
         raw = self._unscaled(letter, number) if self.scaled else self._checked(letter, number)
         data = struct.pack(">" + letter, raw)
-        words = [data[0] << 8 if self.mask == 0xFF00 else data[0]] if len(data) == 1 else _words(data, self.order)
+        words = _words(data, self.order) if self.mask == 0xFFFF else self._in_part(int.from_bytes(data, "big"))
         self._check_allowed(words)
         return words
 

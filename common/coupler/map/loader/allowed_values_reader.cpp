@@ -26,7 +26,7 @@ void check_bound(std::string_view key, double bound, const Reader& reader, const
   if (entry == nullptr) return;
   // 65535 × 0.001 - 40 is not quite 25.535.
   const double rounding = codec::is_float(point.format.type) ? 0 : 1e-6 * std::fabs(point.scale.gain);
-  const auto [least, most] = codec::published_range(point.format.type, point.scale);
+  const auto [least, most] = codec::published_range(point.format, point.scale);
   if (bound < least - rounding || bound > most + rounding) {
     context.problems.error(entry->at,
                            fmt::format("'{}' is {:.15g}, but {} is published from {:.15g} to {:.15g}", key,

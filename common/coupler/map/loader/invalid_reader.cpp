@@ -21,9 +21,10 @@ constexpr std::string_view form =
     "write it as in 'invalid: 0x8000', 'invalid: [0x7FFF, 0x8000]', or with a range "
     "'invalid: [[0xFFF0, 0xFFFF]]'";
 
-std::string_view example_of(Type type) {
-  if (codec::is_float(type)) return "nan, -9999 or 0x7FC00000";
-  return codec::width(type) == 8 ? "0xFF" : "0x8000";
+std::string example_of(const codec::Format& format) {
+  if (codec::is_float(format.type)) return "nan, -9999 or 0x7FC00000";
+  if (format.bits != 0) return fmt::format("0x{:X}", codec::largest_in(format.bits));
+  return codec::width(format.type) == 8 ? "0xFF" : "0x8000";
 }
 
 bool is_hexadecimal(std::string_view text) { return text.substr(0, 2) == "0x" || text.substr(0, 2) == "0X"; }
@@ -122,7 +123,11 @@ class InvalidReader {
   std::uint64_t mask_of_type() const {
     return bits() < 64 ? (std::uint64_t{1} << bits()) - 1 : ~std::uint64_t{0};
   }
-  unsigned bits() const { return point_.format.type == Type::BOOL ? 16 : codec::width(point_.format.type); }
+  unsigned bits() const {
+    const codec::Format& format = point_.format;
+    if (format.bits != 0) return format.bits;
+    return format.type == Type::BOOL ? 16 : codec::width(format.type);
+  }
 
   std::optional<std::uint64_t> raw_value(const Entry& entry) const {
     std::optional<std::uint64_t> raw;
@@ -131,12 +136,13 @@ class InvalidReader {
                                              : codec::with_number(point_.format.type, [&](auto zero) {
                                                  return raw_of<decltype(zero)>(entry.text);
                                                });
+    if (raw && *raw > mask_of_type()) raw.reset();
     if (!raw)
       context_.problems.error(
           entry.at,
           fmt::format("'invalid' must be a raw value of the {} bits of {}, such as {}, not {}", bits(),
                       point_.format.type == Type::BOOL ? "the register" : to_string(point_.format.type),
-                      example_of(point_.format.type), shown(entry)),
+                      example_of(point_.format), shown(entry)),
           std::string(form));
     if (raw) warn_of_narrow_bits(entry);
     return raw;
@@ -185,7 +191,7 @@ void read_faults(const Reader& reader, Point& point, const Context& context) {
                       "use a type that is a number: SINT to ULINT, REAL or LREAL");
     return;
   }
-  const codec::PublishedRange range = codec::published_range(point.format.type, {});
+  const codec::PublishedRange range = codec::published_range(point.format, {});
   const auto check = [&](std::string_view key, double bound, bool is_in_range) {
     const bool is_whole = codec::is_float(point.format.type) || std::trunc(bound) == bound;
     if (reader.has(key) && !is_whole)

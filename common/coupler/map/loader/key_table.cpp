@@ -34,6 +34,7 @@ struct KeyRow : Key {
   constexpr KeyRow lists(Section section) const { return holds(section).with(&Key::several, true); }
   constexpr KeyRow needed() const { return with(&Key::required, true); }
   constexpr KeyRow needed_with(std::string_view other) const { return with(&Key::required_with, other); }
+  constexpr KeyRow needless_with(std::string_view other) const { return with(&Key::needless_with, other); }
   constexpr KeyRow only_for(std::string_view point_types) const { return with(&Key::types, point_types); }
   constexpr KeyRow otherwise(std::string_view value) const { return with(&Key::fallback, value); }
 };
@@ -141,6 +142,7 @@ constexpr Key keys[] = {
     inherited("offset", registers, K::choice, "high", "which byte of the register an 8-bit value is")
         .only_for(byte_types)
         .needed_with("address")
+        .needless_with("bits")
         .one_of<codec::Half>(),
     inherited("length", registers, K::integer, "12", "bytes of a STRING")
         .only_for("STRING")
@@ -160,6 +162,9 @@ constexpr Key keys[] = {
         .only_for("BOOL")
         .needed_with("address")
         .within(0, 15),
+    project("bits", registers, K::ends, "[8, 11]",
+            "the first and last bit of the register that make the number")
+        .only_for("BYTE|USINT|WORD|UINT"),
     project("description", point, K::text, "the left door", "for people"),
     project("units", point, K::text, "mm", "for people"),
     project("initial", point, K::value, "0", "value when the node starts"),

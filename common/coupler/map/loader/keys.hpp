@@ -104,6 +104,7 @@ struct Key {
   bool bits = false;                    ///< besides its choices, a list of on and off is good
   bool required = false;                ///< where it applies
   std::string_view required_with = {};  ///< not required by itself, but beside that key
+  std::string_view needless_with = {};  ///< nor beside this key, which says the same
   std::string_view types = {};          ///< if not empty, only for points of these types, separated by "|"
   std::string_view fallback = {};  ///< what holds when it is absent, as it would be written; empty: nothing
 };

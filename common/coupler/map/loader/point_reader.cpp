@@ -174,7 +174,7 @@ DraftPoint read_place(const Entry& entry, Table table, const PointDefaults& defa
   if (!bits) check_has_options(entry, context);
   read_address(bits && !has_options ? &entry : options.find("address"), defaults.addressing, draft, context);
   if (!bits && has_options) read_format(options, entry, defaults.order, point.format, context);
-  draft.part_given = !bits && (options.has("offset") || options.has("bit"));
+  draft.part_given = !bits && (options.has("offset") || options.has("bit") || options.has("bits"));
   if (context.problems.errors() == errors) read_count(options, point, context);
   if (context.problems.errors() == errors && !draft.addressless) check_range(draft, context);
   const bool good = context.problems.errors() == errors;

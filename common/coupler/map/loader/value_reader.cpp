@@ -49,7 +49,9 @@ void check_type_keys(const Reader& reader, const Entry& point, Type type, const 
     if (given && !applies)
       reader.refuse(key.name, fmt::format("'{}' does not apply to {}", key.name, to_string(type)),
                     remedy_for_other_type(*reader.find(key.name), type));
-    const bool required = key.required || (!key.required_with.empty() && reader.has(key.required_with));
+    const bool needless = !key.needless_with.empty() && reader.has(key.needless_with);
+    const bool required_here = !key.required_with.empty() && reader.has(key.required_with) && !needless;
+    const bool required = key.required || required_here;
     if (!given && applies && required)
       context.problems.error(
           point.key_at,
@@ -79,6 +81,44 @@ bool check_order(const Entry& order, Type type, const Context& context) {
     return true;
   }
   return false;
+}
+
+/// Refuses the other keys that say where a value is, or that need whole registers.
+bool goes_with_bits(const Reader& reader) {
+  for (const std::string_view key : {"offset", "count", "counter"})
+    if (reader.has(key)) {
+      reader.refuse(key, fmt::format("'{}' does not go with 'bits'", key), "remove one of the two");
+      return false;
+    }
+  return true;
+}
+
+/// `bits: [8, 11]`.
+void read_bits(const Reader& reader, Format& format, const Context& context) {
+  const Entry* entry = reader.find("bits");
+  if (entry == nullptr || !goes_with_bits(reader)) return;
+  std::array<std::optional<std::uint64_t>, 2> ends;
+  if (entry->kind == Entry::Kind::list && entry->children.size() == 2)
+    for (std::size_t i = 0; i < 2; ++i)
+      if (const Entry& end = entry->children[i]; end.kind == Entry::Kind::scalar && !end.quoted)
+        ends[i] = parse_unsigned(end.text);
+  const auto& [first, last] = ends;
+  if (!first || !last || *first > *last || *last > 15)
+    return reader.refuse("bits",
+                         "'bits' must be the first and the last bit of the number, 0 to 15, in a list",
+                         "write it as in 'bits: [8, 11]'; bit 0 is the least significant");
+  if (!reader.has("address"))  // the lock has no places for it
+    return reader.refuse("bits", "a point with 'bits' needs an 'address'", "write its 'address'");
+  const std::uint64_t count = *last - *first + 1;
+  if (count == 1)
+    return reader.refuse("bits", "this is one bit", fmt::format("write 'type: BOOL, bit: {}'", *first));
+  if (count == 16) return reader.refuse("bits", "these are all bits of the register", "remove 'bits'");
+  if (count > codec::width(format.type))
+    return context.problems.error(
+        entry->at, fmt::format("{} bits do not fit into {}", count, to_string(format.type)),
+        fmt::format("write 'type: {}'", format.type == Type::BYTE ? "WORD" : "UINT"));
+  format.bit = static_cast<std::uint8_t>(*first);
+  format.bits = static_cast<std::uint8_t>(count);
 }
 
 void read_order(const Reader& reader, Order map_order, Format& format, const Context& context) {
@@ -198,7 +238,7 @@ class ValueWriter {
     if (!value) return wrong(entry, "a number, as it is published");
     if (codec::encode_published(*value, point_.format, point_.scale, registers) == codec::ScaleError::none)
       return true;
-    const auto range = codec::published_range(point_.format.type, point_.scale);
+    const auto range = codec::published_range(point_.format, point_.scale);
     context_.problems.error(
         entry.at,
         fmt::format("'{}': {} is published from {:.15g} to {:.15g}, so {} cannot be written", key_,
@@ -234,7 +274,7 @@ std::optional<std::pair<double, double>> ends(const Reader& scale, std::string_v
 }
 
 /// `raw` and `value`: two points of a line, in place of gain and offset.
-void read_ends(const Reader& reader, Type type, codec::Scale& scale, const Context& context) {
+void read_ends(const Reader& reader, const Format& format, codec::Scale& scale, const Context& context) {
   for (const auto& [key, other] : {std::pair("raw", "value"), std::pair("value", "raw")}) {
     if (!reader.has(key)) continue;
     if (!reader.has(other))
@@ -249,12 +289,14 @@ void read_ends(const Reader& reader, Type type, codec::Scale& scale, const Conte
   const auto raw = ends(reader, "raw");
   const auto value = ends(reader, "value");
   if (!raw || !value) return;
-  const auto [least, most] = codec::published_range(type, {});
+  const auto [least, most] = codec::published_range(format, {});
   if (std::min(raw->first, raw->second) < least || std::max(raw->first, raw->second) > most)
     context.problems.warning(reader.find("raw")->at,
                              fmt::format("'raw' has a number beyond those of {}, {:.15g} to {:.15g}",
-                                         to_string(type), least, most),
-                             "write another type, as UINT for 0 to 65535, or other numbers");
+                                         format.bits != 0 ? "its bits" : to_string(format.type), least, most),
+                             format.bits != 0
+                                 ? "write other numbers, or more 'bits'"
+                                 : "write another type, as UINT for 0 to 65535, or other numbers");
   const double gain = (value->second - value->first) / (raw->second - raw->first);
   const double offset = value->first - raw->first * gain;
   if (gain == 0 || !std::isfinite(gain) || !std::isfinite(offset))
@@ -280,6 +322,7 @@ void read_format(const Reader& reader, const Entry& point, Order order, Format& 
   check_type_keys(reader, point, format.type, context);
   if (is_byte(format.type)) reader.choice("offset", format.half);
   if (is_bit(format.type)) reader.integer("bit", format.bit);
+  read_bits(reader, format, context);
   if (!is_text(format.type)) return read_order(reader, order, format, context);
   reader.integer("length", format.length);
   reader.choice("encoding", format.encoding);
@@ -299,7 +342,7 @@ void read_scale(const Reader& reader, Point& point, const Context& context) {
   if (entry->kind == Entry::Kind::map) {
     const Reader inside(*entry, Section::scale, context);
     inside.fields(scale);
-    read_ends(inside, point.format.type, scale, context);
+    read_ends(inside, point.format, scale, context);
     if (inside.has("exponent_of") && !scale.has_exponent())
       inside.wrong("exponent_of", "the name of a point");
     if (scale.gain == 0) inside.wrong("gain", "a number other than 0");

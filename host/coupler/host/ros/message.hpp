@@ -43,8 +43,7 @@ struct NumberMessage {
     message.data = codec::take<T>(point.format, registers);
   }
   static std::string encode(const Message& message, const Point& point, std::uint16_t* registers) {
-    codec::put(static_cast<T>(message.data), point.format, registers);
-    return {};
+    return TypedValue<T>::encode(static_cast<T>(message.data), point, registers);
   }
 };
 

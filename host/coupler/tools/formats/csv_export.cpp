@@ -43,7 +43,7 @@ void add_format(const Point& point, Cells& cells) {
   }
   const unsigned width = codec::width(format.type);
   if (format.type == codec::Type::BOOL) cells["bit"] = fmt::to_string(format.bit);
-  if (width == 8) cells["offset"] = codec::to_string(format.half);
+  if (width == 8 && format.bits == 0) cells["offset"] = codec::to_string(format.half);
   if (width > 16 || codec::bytes_swapped(format.order))
     cells["order"] = codec::to_string(format.order, width <= 16);
   if (point.scale.present()) cells["scale"] = scale_text(point.scale);

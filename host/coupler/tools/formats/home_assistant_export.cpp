@@ -226,6 +226,9 @@ class EntityWriter {
         entities_.binary_sensors += head(point, element, read_range(point)) + input_type;
       return;
     }
+    if (point.format.bits != 0)
+      return warnings_.add("numbers in some bits of a register are left out",
+                           "make template sensors of the whole register", point.name);
     std::string& out = entities_.sensors;
     out += head(point, element, read_range(point)) + input_type + format_keys(point, indent);
     if (point.scale.gain != 1) out += fmt::format("{}scale: {}\n", indent, point.scale.gain);

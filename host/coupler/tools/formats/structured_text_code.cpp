@@ -145,6 +145,20 @@ std::string with_half(const std::string& word, bool high, const std::string& byt
               : fmt::format("{0} := ({0} AND WORD#16#FF00) OR BYTE_TO_WORD({1});", word, byte);
 }
 
+/// The number in some bits of the register, as bits of its type.
+std::string field_of(const codec::Format& format, const Expressions& at) {
+  const std::string bits = fmt::format("SHR({}, {}) AND WORD#16#{:04X}", at.swapped(at.word(0)), format.bit,
+                                       codec::largest_in(format.bits));
+  return codec::width(format.type) == 8 ? fmt::format("WORD_TO_BYTE({})", bits) : fmt::format("({})", bits);
+}
+
+std::string with_field(const codec::Format& format, const Expressions& at) {
+  const bool is_byte = codec::width(format.type) == 8;
+  const std::string number = is_byte ? fmt::format("BYTE_TO_WORD({})", at.raw_bits()) : at.raw_bits();
+  return fmt::format("{0} := ({0} AND WORD#16#{1:04X}) OR {2};", at.word(0), 0xFFFF ^ codec::mask(format),
+                     at.swapped(fmt::format("SHL({}, {})", number, format.bit)));
+}
+
 /// The bit of a byte or of a register.
 struct BitPlace {
   std::string cell;
@@ -164,6 +178,8 @@ void decode_element(const Point& point, const Expressions& at, Body& body) {
   if (type == Type::BOOL) {
     const BitPlace bit = bit_place(point, at);
     body.add(fmt::format("{} := ({} AND {}) <> {};", at.variable(), bit.cell, bit.mask, bit.zero));
+  } else if (point.format.bits != 0) {
+    body.add(fmt::format("{} := {};", at.variable(), at.published(field_of(point.format, at))));
   } else if (codec::width(type) == 8) {
     body.add(fmt::format("{} := {};", at.variable(),
                          at.published(half_of(at.word(0), is_high_half(point.format)))));
@@ -184,7 +200,9 @@ void decode_element(const Point& point, const Expressions& at, Body& body) {
 void encode_number(const Point& point, const Expressions& at, Body& body) {
   const Type type = point.format.type;
   const unsigned count = codec::registers(point.format);
-  if (codec::width(type) == 8) {
+  if (point.format.bits != 0) {
+    body.add(with_field(point.format, at));
+  } else if (codec::width(type) == 8) {
     body.add(with_half(at.word(0), is_high_half(point.format), at.raw_bits()));
   } else if (count == 1) {
     body.add(fmt::format("{} := {};", at.word(0), at.swapped(at.raw_bits())));
@@ -210,7 +228,8 @@ void encode_element(const Point& point, const Expressions& at, Body& body) {
     body.close("END_IF;");
     return;
   }
-  const bool is_limited = limits_values(point) || point.scale.present() || is_float(point.format.type);
+  const bool is_limited =
+      limits_values(point) || point.scale.present() || is_float(point.format.type) || point.format.bits != 0;
   if (!is_limited) return encode_number(point, at, body);
   std::string_view end = "END_IF;";
   if (!point.values.empty()) {

@@ -117,6 +117,9 @@ void add_warnings(const Point& point, ConversionWarnings& warnings) {
 bool is_field(const Point& point, ConversionWarnings& warnings) {
   if (!is_readable(point))
     warnings.add("write-only points are left out", "no action is needed: Telegraf only reads", point.name);
+  else if (point.format.bits != 0)
+    warnings.add("numbers in some bits of a register are left out", "read the register and use a processor",
+                 point.name);
   else if (is_at_the_end(point))
     warnings.add("Telegraf refuses fields that end at address 65535, so they are left out", "move the point",
                  point.name);

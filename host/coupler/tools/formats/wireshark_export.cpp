@@ -27,7 +27,10 @@ void add_format(const Point& point, std::string& row) {
                      to_string(format.type), codec::width(format.type), codec::words_reversed(format.order),
                      codec::bytes_swapped(format.order));
   if (format.type == codec::Type::BOOL) row += fmt::format(", bit = {}", format.bit);
-  if (codec::width(format.type) == 8) row += fmt::format(", high = {}", format.half == codec::Half::high);
+  if (format.bits != 0)
+    row += fmt::format(", bit = {}, width = {}", format.bit, format.bits);
+  else if (codec::width(format.type) == 8)
+    row += fmt::format(", high = {}", format.half == codec::Half::high);
   if (format.type == codec::Type::STRING)
     row += fmt::format(", length = {}, encoding = \"{}\"", format.length, codec::to_string(format.encoding));
   if (point.scale.present())

@@ -90,6 +90,10 @@ local function part_of(tvb, at, point)
   if point.type == "BOOL" then
     return bit_of(point.bytes_swapped and swapped(word) or word, point.bit)
   end
+  if point.width then
+    word = point.bytes_swapped and swapped(word) or word
+    return math.floor(word / 2 ^ point.bit) % 2 ^ point.width
+  end
   if point.high ~= point.bytes_swapped then return math.floor(word / 256) end
   return word % 256
 end
@@ -97,10 +101,11 @@ end
 -- Raw number, and its text.
 local function number_of(tvb, at, point)
   local type, bits = point.type, point.bits
-  if bits < 16 then
+  if bits < 16 or point.width then
     local part = part_of(tvb, at, point)
     if type == "BOOL" then return part, part == 1 and "true" or "false" end
     if type == "BYTE" then return part, string.format("0x%02X", part) end
+    if type == "WORD" then return part, string.format("0x%04X", part) end
     if type == "CHAR" and part >= 32 and part < 127 then return part, part .. " '" .. string.char(part) .. "'" end
     if type == "SINT" then part = signed(part, 8) end
     return part, string.format("%.0f", part)

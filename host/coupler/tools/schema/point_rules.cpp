@@ -145,7 +145,7 @@ Json values_rule(Type type) {
 
 /// `min` and `max` of a number without scale.
 Json bounds_rule(Type type) {
-  const auto [least, most] = codec::published_range(type, {});
+  const auto [least, most] = codec::published_range({type}, {});
   Json bound{{"type", "number"}, {"minimum", least}, {"maximum", most}};
   if (is_whole(type)) bound = values_of(type);
   return {{"if", {{"not", is_scaled()}}}, {"then", {{"properties", {{"min", bound}, {"max", bound}}}}}};
@@ -187,6 +187,9 @@ void add_rules_of_registers(Section section, Rules& rules) {
   rules.push_back(when(has("scale", {{"type", "object"}, {"required", {"exponent_of"}}}),
                        none_of({"initial", "min", "max", "iio", "pwm"}, section)));
   rules.push_back(not_both("counter", "iio"));
+  rules.push_back(when(has("bits"), none_of({"offset", "counter", "iio", "pwm"}, section)));
+  rules.push_back(when(has("bits"), only("count", {{"const", 1}})));
+  rules.push_back(only("bits", {{"items", {{"type", "integer"}, {"minimum", 0}, {"maximum", 15}}}}));
   if (section == Section::input_register) return;
   rules.push_back(not_both("counter", "pwm"));
   rules.push_back(not_both("iio", "pwm"));

@@ -68,6 +68,8 @@ Json rule_for_types(const Key& key) {
   const Json needed = Json::array({key.name});
   if (key.required) rule["then"] = {{"required", needed}};
   if (!key.required_with.empty()) rule["then"] = {{"dependencies", {{key.required_with, needed}}}};
+  if (!key.needless_with.empty())
+    rule["then"] = {{"anyOf", {{{"required", Json::array({key.needless_with})}}, rule["then"]}}};
   return rule;
 }
 
