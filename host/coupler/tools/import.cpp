@@ -131,9 +131,11 @@ Exit run(const Arguments& arguments) {
     return complain("import", bad_call,
                     fmt::format("--columns '{}' is not a list of columns", arguments.columns),
                     "write it as in --columns 'name=Tag no.,address=Reg'");
-  if (!importer->is_table && (!arguments.columns.empty() || arguments.addressing != "zero_based"))
-    return complain("import", bad_call, "--columns and --addressing are for tables",
-                    fmt::format("leave them out: '{}' says both itself", importer->name));
+  const bool has_table_options = !arguments.columns.empty() || arguments.addressing != "zero_based" ||
+                                 !options.order.empty() || !options.strings.empty();
+  if (!importer->is_table && has_table_options)
+    return complain("import", bad_call, "--columns, --addressing, --order and --strings are for tables",
+                    fmt::format("leave them out: '{}' says all that itself", importer->name));
   if (!importer->has_devices && !options.device.empty())
     return complain(
         "import", bad_call, "--device is for files that may have several",
@@ -182,8 +184,20 @@ void add_import(Program& program, Exit& exit) {
   command
       .add_option("--columns", arguments->columns,
                   "Headings of a table that are not understood, or have two meanings: name=Tag,address=Reg, "
-                  "scale=Gain (a factor) or divisor=Gain")
+                  "scale=Gain (a factor) or divisor=Gain, scaled_units=Unit (0.1V scales) or units=Unit (it "
+                  "is the name of the units), scale_offset=Offset or address_offset=Offset")
       .type_name("LIST");
+  command
+      .add_option("--order", arguments->options.order,
+                  "Order of a table's values of several registers that have none: ABCD is the most "
+                  "significant register first, CDAB the least significant")
+      .one_of({"ABCD", "CDAB", "BADC", "DCBA"})
+      .type_name("ORDER");
+  command
+      .add_option("--strings", arguments->options.strings,
+                  "What the number in a table's type string[6] counts: characters, or registers")
+      .one_of({"characters", "registers"})
+      .type_name("WHAT");
   command.add_flag("--force", arguments->force, "Replace a map that is there with --out");
   command.add_flag("--list", arguments->list, "Print the formats");
   command.footer(

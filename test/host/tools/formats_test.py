@@ -49,6 +49,47 @@ class Import(Cli):
         self.assertIn("is not a list of columns; write it as in", self.coupler("import", "csv", name, "--columns", "x").stderr)
         self.assertIn("are for tables", self.coupler("import", "origin", name, "--columns", "name=x").stderr)
 
+    def test_asks_for_what_a_makers_list_leaves_open_and_takes_the_answer(self):
+        units = self.file("units.csv", "name,table,data type,register,unit\nPV1_Voltage,input_registers,ushort,1,0.1V\n"
+                                       "Grid_Hz,input_registers,ushort,15,0.01Hz\n")
+        done = self.coupler("import", "csv", units, "--name", "m")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertIn("units.csv:2:38: error: the units '0.1V' have two meanings", done.stderr)
+        self.assertIn("units.csv:3:35: error: the units '0.01Hz' have two meanings", done.stderr)
+        done = self.coupler("import", "csv", units, "--name", "m", "--columns", "scaled_units=unit")
+        self.assertIn("PV1_Voltage: {type: UINT, address: 1, units: V, scale: 0.1}\n", done.stdout)
+        huawei = self.file("huawei.csv", "Signal name,Table,R/W,Type,Unit,Gain,Address,Quantity\nLine voltage,HR,RO,U16,V,10,32066,1\n"
+                                         "Active power,HR,RO,I32,kW,1000,32080,2\nSet power,HR,RW,I32,kW,1000,40120,2\n")
+        self.assertIn("error: 'Gain' has two meanings", self.coupler("import", "csv", huawei).stderr)
+        done = self.coupler("import", "csv", huawei, "--columns", "divisor=Gain")
+        self.assertIn("huawei.csv:3:20: error: 'I32' has several registers, as 1 more have", done.stderr)
+        done = self.coupler("import", "csv", huawei, "--columns", "divisor=Gain", "--order", "ABCD")
+        self.assertRegex(done.stdout, r"Active_power: \{access: read, type: DINT, units: kW, scale: 0\.001, address: 32080, order: ABCD")
+        strings = self.file("s.csv", "name,table,address,type\nlabel,hr,1,string[6]\n")
+        self.assertIn("s.csv:2:12: error: 'string[6]' has two meanings", self.coupler("import", "csv", strings).stderr)
+        self.assertIn("length: 12}", self.coupler("import", "csv", strings, "--strings", "registers").stdout)
+        for option in (("--order", "ABCD"), ("--strings", "registers")):
+            self.assertIn("are for tables", self.coupler("import", "origin", strings, *option).stderr)
+
+    def test_takes_the_addresses_of_an_opc_server(self):
+        name = self.file("oven.csv", "Tag Name,Address,Data Type,Respect Data Type,Client Access,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,Eng Units\n"
+                                     '"Temp1","400001",Short,1,RO,Linear,0,1000,0,100,"C"\n"Power","400010",Float,1,R/W,,,,,,\n'
+                                     '"Flags","400020",Word,1,RO,,,,,,\n"Alarm","400020.03",Boolean,1,RO,,,,,,\n'
+                                     '"Name","400030.20H",String,1,R/W,,,,,,\n"Profile","400060 [8]",Short Array,1,R/W,,,,,,\n'
+                                     '"Valve","000005",Boolean,1,R/W,,,,,,\n"Door","100007",Boolean,1,RO,,,,,,\n')
+        done = self.coupler("import", "csv", name, "--name", "oven", "--addressing", "modicon", "--order", "CDAB")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for line in ("Temp1: {address: 400001, type: INT, access: read, units: C, scale: {raw: [0, 1000], value: [0, 100]}}",
+                     "Alarm: {address: 400020, type: BOOL, access: read, bit: 3}", "Door: {address: 100007, access: read}",
+                     "Name: {address: 400030, type: STRING, access: read_write, length: 20, ignore_byteorder: true}",
+                     "Profile: {address: 400060, type: INT, access: read_write, count: 8}"):
+            self.assertIn(line, done.stdout)
+        name = self.file("addresses.csv", "name,address,type\na,400020.03,INT\nb,4x00021,INT\nc,%MW20,INT\nd,40001-40003,DINT\ne,,INT\n")
+        done = self.coupler("import", "csv", name, "--addressing", "modicon", "--order", "CDAB")
+        for told in ("2:3: error: '400020.03' is not a Modicon number; a bit is type: BOOL, bit: 3 at 400020", "4:3: error: '%MW20' is a variable",
+                     "5:3: error: '40001-40003' says 3 registers, but the point has 2", "6:3: error: the point has no address"):
+            self.assertIn(told, done.stderr)
+
     def test_takes_one_device_of_a_file_with_several(self):
         name = self.file("configuration.yaml", "modbus:\n" + "".join(
             f"  - {{name: {hub}, type: tcp, host: plc, port: 502, binary_sensors: [{{name: door, address: 1}}]}}\n" for hub in ("a", "b")))

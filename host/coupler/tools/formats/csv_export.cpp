@@ -14,6 +14,7 @@
 #include "coupler/map/loader/document.hpp"
 #include "coupler/map/loader/keys.hpp"
 #include "coupler/tools/formats/csv.hpp"
+#include "coupler/tools/formats/csv_headings.hpp"
 #include "coupler/tools/formats/map_tree.hpp"
 
 namespace coupler::formats {
@@ -21,10 +22,6 @@ namespace {
 
 using loader::Entry;
 using Cells = std::map<std::string, std::string, std::less<>>;  // by column
-
-/// Columns of every table.
-constexpr std::string_view always[] = {"table", "name",   "address", "type",
-                                       "order", "access", "units",   "description"};
 
 std::string scale_text(const codec::Scale& scale) {
   if (scale.offset == 0 && !scale.has_exponent()) return fmt::to_string(scale.gain);
@@ -110,7 +107,7 @@ EntriesByName entries_of(const Entry& root) {
 
 /// In the order of the key table.
 std::vector<std::string> columns_of(const std::vector<Cells>& rows) {
-  std::vector<std::string> columns(std::begin(always), std::end(always));
+  std::vector<std::string> columns(std::begin(exported_columns), std::end(exported_columns));
   for (const loader::Key& key : loader::all_keys()) {
     const bool used =
         std::any_of(rows.begin(), rows.end(), [&](const Cells& cells) { return cells.count(key.name) > 0; });

@@ -7,7 +7,6 @@
 
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/nearest.hpp"
-#include "coupler/tools/formats/csv_words.hpp"
 
 namespace coupler::formats {
 namespace {
@@ -15,6 +14,8 @@ namespace {
 using loader::Problems;
 using loader::Section;
 using loader::shown;
+
+constexpr std::size_t most_columns = 1000;
 
 constexpr Section any_point =
     Section::coil | Section::discrete_input | Section::input_register | Section::holding_register;
@@ -26,28 +27,42 @@ std::vector<std::string_view> column_names() {
 }
 
 /// The heading's own meaning, or what --columns says of it.
-Meaning meaning_of(std::string_view heading, const ImportOptions& options) {
-  Meaning own = formats::meaning_of(heading);
+Column column_of(std::string_view heading, const ImportOptions& options) {
+  Meaning own = meaning_of(heading);
   for (const auto& [column, given] : options.columns) {
     if (lower(given) != lower(heading)) continue;
-    Meaning meaning = formats::meaning_of(column);
+    Meaning meaning = meaning_of(column);
     const bool says_less = meaning.reading == Reading::plain && own.reading != Reading::factor_or_divisor;
-    return meaning.key == own.key && says_less ? own : meaning;
+    if (meaning.key != own.key || !says_less) own = std::move(meaning);
+    return {std::move(own.key), nullptr, own.reading, true};
   }
-  return own;
+  return {std::move(own.key), nullptr, own.reading, false};
 }
 
 bool is_known(const Column& column) {
+  if (column.reading == Reading::left_out) return false;
+  if (column.reading != Reading::plain) return true;
   return column.described != nullptr || column.key == "table" || column.key == "name" || column.key == "unit";
 }
 
+std::string_view remedy_for_left_out(std::string_view key) {
+  if (key == "scan_rate") return "'rate' in the map says how often a second points are read";
+  if (key == "clamp_low" || key == "clamp_high")
+    return "values beyond the scale's ends are published as they are; 'min' and 'max' limit what is written";
+  return "no action is needed: it concerns the other program only";
+}
+
 /// Reports how a column is treated that is not a property of a point.
-void report_unknown(const Cell& heading, std::string_view key, Problems& problems) {
+void report_unknown(const Cell& heading, const Column& column, Problems& problems) {
+  const std::string_view key = column.key;
   const auto names = column_names();
   const std::string_view near = nearest(key, names);
   const bool slip =
       std::any_of(names.begin(), names.end(), [&](const auto name) { return is_slip(key, name); });
-  if (slip)
+  if (column.reading == Reading::left_out)
+    problems.warning(heading.at, fmt::format("the column {} is not carried over", shown(heading.text)),
+                     std::string(remedy_for_left_out(column.key)));
+  else if (slip)
     problems.error(heading.at, fmt::format("a point has no key {}", shown(heading.text)),
                    fmt::format("did you mean '{}'? If not, give the column another heading", near));
   else
@@ -58,26 +73,50 @@ void report_unknown(const Cell& heading, std::string_view key, Problems& problem
                      : fmt::format("did you mean '{}'?", near));
 }
 
-void need_columns(const Row& header, const std::vector<Column>& columns, const ImportOptions& options,
-                  Problems& problems) {
+/// Some address begins with a letter, as "HR20" does, which names a table.
+bool addresses_name_tables(const std::vector<Row>& rows, const std::vector<Column>& columns) {
+  const auto address = std::find_if(columns.begin(), columns.end(),
+                                    [](const Column& column) { return column.key == "address"; });
+  const auto at = static_cast<std::size_t>(address - columns.begin());
+  return address != columns.end() && std::any_of(rows.begin() + 1, rows.end(), [at](const Row& row) {
+           return at < row.size() && !row[at].text.empty() &&
+                  (loader::is_letter(row[at].text[0]) || row[at].text[0] == '%');
+         });
+}
+
+void need_columns(const std::vector<Row>& rows, const std::vector<Column>& columns,
+                  const ImportOptions& options, Problems& problems) {
+  const Row& header = rows.front();
   for (const std::string_view needed : {"table", "name", "address"}) {
     // Modicon's numbers begin with the table's digit.
-    if (needed == "table" && options.addressing == loader::Addressing::modicon) continue;
+    const bool is_table = needed == "table";
+    if (is_table && options.addressing == loader::Addressing::modicon) continue;
+    if (is_table && addresses_name_tables(rows, columns)) continue;
     if (std::none_of(columns.begin(), columns.end(), [&](const Column& c) { return c.key == needed; }))
       problems.error(header.front().at, fmt::format("there is no column '{}'", needed),
                      fmt::format("begin with a line of headings, such as table,name,address,type; or say "
-                                 "which one it is: --columns {}=HEADING",
-                                 needed));
+                                 "which one it is: --columns {}=HEADING{}",
+                                 needed,
+                                 is_table ? "; addresses such as 40001 need no such column with "
+                                            "--addressing modicon"
+                                          : ""));
   }
 }
 
 }  // namespace
 
-std::vector<Column> read_header(const Row& header, const ImportOptions& options, Problems& problems) {
+std::vector<Column> read_header(const std::vector<Row>& rows, const ImportOptions& options,
+                                Problems& problems) {
+  const Row& header = rows.front();
   std::vector<Column> columns;
+  if (header.size() > most_columns) {
+    problems.error(header.front().at, fmt::format("the first line has {} headings", header.size()),
+                   fmt::format("write at most {}", most_columns));
+    return columns;
+  }
+  columns.reserve(header.size());
   for (const Cell& cell : header) {
-    auto [key, reading] = meaning_of(cell.text, options);
-    Column column{std::move(key), nullptr, reading};
+    Column column = column_of(cell.text, options);
     column.described = loader::find_key(column.key, any_point);
     const bool twice = std::any_of(columns.begin(), columns.end(),
                                    [&](const Column& c) { return !c.key.empty() && c.key == column.key; });
@@ -86,54 +125,18 @@ std::vector<Column> read_header(const Row& header, const ImportOptions& options,
                      fmt::format("the column '{}' is there twice, here as {}", column.key, shown(cell.text)),
                      "remove one, or give it another heading");
     if (!is_known(column) && !column.key.empty()) {
-      report_unknown(cell, column.key, problems);
+      report_unknown(cell, column, problems);
       column.key.clear();
     }
     columns.push_back(std::move(column));
   }
-  need_columns(header, columns, options, problems);
+  need_columns(rows, columns, options, problems);
   for (const auto& [column, heading] : options.columns)
     if (std::none_of(header.begin(), header.end(),
                      [&, &name = heading](const Cell& c) { return lower(c.text) == lower(name); }))
       problems.error(header.front().at, fmt::format("--columns: there is no heading {}", shown(heading)),
                      "write it as the file does");
   return columns;
-}
-
-void tell_units_from_unit_ids(std::vector<Column>& columns, const std::vector<Row>& rows) {
-  const auto of = [&](std::string_view key) {
-    return std::find_if(columns.begin(), columns.end(), [key](const Column& c) { return c.key == key; });
-  };
-  const auto unit = of("unit");
-  if (unit == columns.end() || of("units") != columns.end()) return;
-  const auto at = static_cast<std::size_t>(unit - columns.begin());
-  const bool is_text = std::any_of(rows.begin() + 1, rows.end(), [at](const Row& row) {
-    return at < row.size() && !row[at].text.empty() && !loader::parse_unsigned(row[at].text);
-  });
-  if (is_text) *unit = {"units", loader::find_key("units", any_point), Reading::plain};
-}
-
-void refuse_two_meanings(const std::vector<Column>& columns, const std::vector<Row>& rows,
-                         Problems& problems) {
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (columns[i].reading != Reading::factor_or_divisor) continue;
-    const auto differs = std::find_if(rows.begin() + 1, rows.end(), [i](const Row& row) {
-      if (i >= row.size()) return false;
-      std::string number = row[i].text;
-      std::replace(number.begin(), number.end(), ',', '.');
-      const double factor = loader::parse_number(number).value_or(1);
-      return factor != 1 && factor != 0;
-    });
-    if (differs == rows.end()) continue;
-    const Cell& heading = rows.front()[i];
-    problems.error(
-        heading.at,
-        fmt::format("{} has two meanings: with {}, some makers multiply a register by it, others divide",
-                    shown(heading.text), shown((*differs)[i].text)),
-        fmt::format("write --columns 'scale={0}' if it is a factor, or --columns 'divisor={0}'; the ranges "
-                    "and units in the table show which",
-                    heading.text));
-  }
 }
 
 }  // namespace coupler::formats

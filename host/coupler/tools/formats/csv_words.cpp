@@ -22,82 +22,28 @@ struct Word {
   std::string_view meant;
 };
 
-struct Heading {
-  std::string_view said;  ///< in lower case, letters and digits only
-  std::string_view key;
-  Reading reading = Reading::plain;
-};
-
-constexpr Heading headings[] = {
-    {"tag", "name"},
-    {"tagname", "name"},
-    {"signal", "name"},
-    {"signalname", "name"},
-    {"variable", "name"},
-    {"parameter", "name"},
-    {"pointname", "name"},
-    {"registername", "name"},
-    {"register", "address"},
-    {"registeraddress", "address"},
-    {"registernumber", "address"},
-    {"reg", "address"},
-    {"addr", "address"},
-    {"modbusaddress", "address"},
-    {"registertype", "table"},
-    {"area", "table"},
-    {"objecttype", "table"},
-    {"memoryarea", "table"},
-    {"function", "table", Reading::function_codes},
-    {"functioncode", "table", Reading::function_codes},
-    {"functioncodes", "table", Reading::function_codes},
-    {"modbusfunction", "table", Reading::function_codes},
-    {"fc", "table", Reading::function_codes},
-    {"datatype", "type"},
-    {"dtype", "type"},
-    {"format", "type"},
-    {"uom", "units"},
-    {"engineeringunits", "units"},
-    {"engineeringunit", "units"},
-    {"comment", "description"},
-    {"comments", "description"},
-    {"remark", "description"},
-    {"remarks", "description"},
-    {"note", "description"},
-    {"notes", "description"},
-    {"rw", "access"},
-    {"readwrite", "access"},
-    {"accesstype", "access"},
-    {"permission", "access"},
-    {"writable", "access", Reading::may_be_written},
-    {"writeable", "access", Reading::may_be_written},
-    {"writeenable", "access", Reading::may_be_written},
-    {"write", "access", Reading::may_be_written},
-    {"canwrite", "access", Reading::may_be_written},
-    {"readonly", "access", Reading::may_not_be_written},
-    {"ro", "access", Reading::may_not_be_written},
-    {"factor", "scale"},
-    {"multiplier", "scale"},
-    {"divisor", "scale", Reading::divisor},
-    {"divider", "scale", Reading::divisor},
-    {"gain", "scale", Reading::factor_or_divisor},
-    {"scale", "scale", Reading::factor_or_divisor},
-    {"scalefactor", "scale", Reading::factor_or_divisor},
-    {"scaling", "scale", Reading::factor_or_divisor},
-    {"scalingfactor", "scale", Reading::factor_or_divisor},
-    {"byteorder", "order"},
-    {"slave", "unit"},
-    {"slaveid", "unit"},
-    {"unitid", "unit"},
-    {"minimum", "min"},
-    {"maximum", "max"},
-};
-
 constexpr Word accesses[] = {
-    {"r", "read"},          {"ro", "read"},
-    {"readonly", "read"},   {"rd", "read"},
-    {"w", "write"},         {"wo", "write"},
-    {"writeonly", "write"}, {"wr", "write"},
-    {"rw", "read_write"},   {"readwrite", "read_write"},
+    {"r", "read"},
+    {"ro", "read"},
+    {"rd", "read"},
+    {"read", "read"},
+    {"readonly", "read"},
+    {"lesen", "read"},
+    {"nurlesen", "read"},
+    {"w", "write"},
+    {"wo", "write"},
+    {"wr", "write"},
+    {"write", "write"},
+    {"writeonly", "write"},
+    {"schreiben", "write"},
+    {"nurschreiben", "write"},
+    {"rw", "read_write"},
+    {"readwrite", "read_write"},
+    {"readandwrite", "read_write"},
+    {"writeread", "read_write"},
+    {"lesenschreiben", "read_write"},
+    {"lesenundschreiben", "read_write"},
+    {"schreibenlesen", "read_write"},
 };
 
 struct NameOfTable {
@@ -149,19 +95,23 @@ constexpr Code codes[] = {{1, Table::coils, false},
                           {22, Table::holding_registers, true},
                           {23, Table::holding_registers, false}};
 
+/// Words for two tables, the one of bits first.
+struct NameOfTwo {
+  std::string_view said;
+  Table bits;
+  Table registers;
+};
+constexpr NameOfTwo words_of_two[] = {
+    {"input", Table::discrete_inputs, Table::input_registers},
+    {"inputs", Table::discrete_inputs, Table::input_registers},
+    {"output", Table::coils, Table::holding_registers},
+    {"outputs", Table::coils, Table::holding_registers},
+};
+
 const Code* find_code(std::uint64_t number) {
   const auto* found =
       std::find_if(std::begin(codes), std::end(codes), [&](const Code& c) { return c.number == number; });
   return found == std::end(codes) ? nullptr : found;
-}
-
-/// "R/W" -> "rw", "Data type" -> "datatype"
-std::string letters_and_digits(std::string_view text) {
-  std::string word = lower(text);
-  word.erase(std::remove_if(word.begin(), word.end(),
-                            [](char c) { return !loader::is_letter(c) && !loader::is_digit(c); }),
-             word.end());
-  return word;
 }
 
 /// "03/16" and "0x03, 0x10" as their numbers; empty if anything else is between them.
@@ -187,9 +137,9 @@ std::string_view without_fc(std::string_view text) {
 /// Reads a cell of a column such as "Writable", where people tick rows and leave the others empty.
 std::optional<bool> answer(std::string_view text) {
   const std::string word = lower(text);
-  for (const std::string_view yes : {"x", "1", "y", "\u2713", "\u2714"})
+  for (const std::string_view yes : {"x", "1", "y", "j", "ja", "\u2713", "\u2714"})
     if (word == yes) return true;
-  for (const std::string_view no : {"", "-", "0", "n", "n/a", "\u2717", "\u2718"})
+  for (const std::string_view no : {"", "-", "0", "n", "nein", "n/a", "\u2717", "\u2718"})
     if (word == no) return false;
   return loader::parse_boolean(word);
 }
@@ -235,20 +185,17 @@ TableWord ambiguous(std::string_view text, std::uint64_t number) {
 
 }  // namespace
 
-Meaning meaning_of(std::string_view heading) {
-  // The map's own key is a factor, as `coupler export` writes it. Other programs' "Scale" may divide.
-  const std::string word = heading == "scale" ? "" : letters_and_digits(heading);
-  for (const auto& [said, key, reading] : headings)
-    if (word == said) return {std::string(key), reading};
-  std::string key = lower(heading);
-  std::replace(key.begin(), key.end(), ' ', '_');
-  return {std::move(key), Reading::plain};
-}
-
-TableWord read_table(std::string_view text, bool function_codes) {
+TableWord read_table(std::string_view text, bool function_codes, Holds holds) {
   const std::string word = letters_and_digits(text);
   for (const auto& [said, meant] : table_words)
     if (word == said) return {meant, Codes::none, "", ""};
+  for (const auto& [said, bits, registers] : words_of_two) {
+    if (word != said) continue;
+    if (holds == Holds::registers) return {registers, Codes::none, "", ""};
+    return {std::nullopt, Codes::none,
+            fmt::format("{} is {} or {}", loader::shown(text), to_string(bits), to_string(registers)),
+            "write the one that the device's manual means"};
+  }
   const std::string_view bare = without_fc(text);
   const auto numbers = numbers_of(bare);
   if (!numbers.empty() && (function_codes || bare.size() != text.size()))
@@ -273,16 +220,11 @@ std::string_view access_of(std::string_view text, Reading reading) {
   if (reading == Reading::may_be_written || reading == Reading::may_not_be_written)
     if (const auto yes = answer(text))
       return *yes == (reading == Reading::may_be_written) ? "read_write" : "read";
-  const std::string word = letters_and_digits(text);
+  // "WR" stands beside "RD", but "W/R" is both.
+  const std::string word = lower(text) == "w/r" ? "rw" : letters_and_digits(text);
   for (const auto& [said, meant] : accesses)
     if (word == said) return meant;
   return text;
-}
-
-std::optional<double> factor_of(std::string_view divisor) {
-  const auto number = loader::parse_number(divisor);
-  if (!number || *number == 0) return std::nullopt;
-  return 1 / *number;
 }
 
 }  // namespace coupler::formats

@@ -36,6 +36,8 @@ struct ImportOptions {
   loader::Addressing addressing = loader::Addressing::zero_based;  ///< what a table's addresses count
   std::vector<ColumnNames> columns{};                              ///< headings that no word is known for
   std::string device{};                                            ///< of a file with several: its name there
+  std::string order{};    ///< of a table's values of several registers that have none: "ABCD"
+  std::string strings{};  ///< what 6 of "string[6]" counts: "characters" or "registers"; empty: is asked for
 };
 
 /// Reads UTF-8 text without control characters or byte order mark. What makes the file unusable is an error,

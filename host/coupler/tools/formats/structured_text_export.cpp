@@ -121,12 +121,12 @@ class Writer {
     }
   }
 
-  Side side(const std::string& verb, const std::string& values, std::vector<st::Block> blocks) {
+  Side side(const std::string& verb, const std::string& values, std::vector<st::Block> own_blocks) {
     UniqueNames names(warnings_);
-    for (st::Block& block : blocks)
+    for (st::Block& block : own_blocks)
       block.name = names.make(fmt::format("{}_{}", to_string(block.table), block.range.start()), {});
     return {verb,
-            std::move(blocks),
+            std::move(own_blocks),
             global(fmt::format("{}_{}_type", prefix_, values)),
             global(fmt::format("{}_{}_image_type", prefix_, verb)),
             global(fmt::format("{}_{}", prefix_, verb == "read" ? "decode" : "encode")),

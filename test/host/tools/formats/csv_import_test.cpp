@@ -109,15 +109,18 @@ TEST(CsvImport, A_column_that_is_nearly_a_key_is_an_error) {
 }
 
 TEST(CsvImport, Types_are_read_under_all_their_names_and_written_under_that_of_IEC_61131_3) {
+  formats::ImportOptions options;
+  options.order = "CDAB";
   const Imported csv("csv",
                      "table,name,address,type,length,initial\n"
                      "holding_registers,a,0,uint32,,\n"
                      "holding_registers,b,2,Float,,\n"
                      "holding_registers,c,4,text,4,12\n"
-                     "coils,d,0,boolean,,\n");
+                     "coils,d,0,boolean,,\n",
+                     options);
   EXPECT_EQ(csv.said, "");
-  EXPECT_THAT(csv.text(), HasSubstr("a: {address: 0, type: UDINT}"));
-  EXPECT_THAT(csv.text(), HasSubstr("b: {address: 2, type: REAL}"));
+  EXPECT_THAT(csv.text(), HasSubstr("a: {address: 0, type: UDINT, order: CDAB}"));
+  EXPECT_THAT(csv.text(), HasSubstr("b: {address: 2, type: REAL, order: CDAB}"));
   EXPECT_THAT(csv.text(), HasSubstr("c: {address: 4, type: STRING, length: 4, initial: \"12\"}"));
   EXPECT_THAT(csv.text(), HasSubstr("d: 0"));
   EXPECT_THAT(Imported("csv", "table,name,address,type\nholding_registers,a,0,LONG\n").said,
