@@ -10,6 +10,7 @@
 #include <yaml-cpp/mark.h>
 #include <yaml-cpp/parser.h>
 
+#include "coupler/map/loader/aliases.hpp"
 #include "coupler/map/loader/problems.hpp"
 #include "coupler/map/loader/source_text.hpp"
 #include "coupler/map/loader/syntax_error.hpp"
@@ -36,8 +37,9 @@ constexpr std::size_t deepest = 16;  // a map needs five
 /// Builds the tree from yaml-cpp's events, and checks the text again wherever yaml-cpp lets mistakes pass.
 class TreeBuilder : public YAML::EventHandler {
  public:
-  TreeBuilder(std::string_view text, bool json)
-      : text_(text), end_(position_of(text, text.size())), json_(json) {}
+  /// `anchors`: nullptr where they and aliases are refused.
+  TreeBuilder(std::string_view text, bool json, Anchors* anchors)
+      : text_(text), end_(position_of(text, text.size())), json_(json), anchors_(anchors) {}
 
   Entry take() && { return std::move(root_); }
 
@@ -50,24 +52,31 @@ class TreeBuilder : public YAML::EventHandler {
   void OnDocumentEnd() override {}
 
   void OnAnchor(const YAML::Mark& mark, const std::string& name) override {
-    fail(mark, fmt::format("anchors are not supported, as '&{}'", name),
-         "write the values out where they are used");
+    if (anchors_ == nullptr) fail(mark, fmt::format("anchors are not supported, as '&{}'", name), write_out);
   }
-  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    fail(mark, "aliases are not supported", "write the values out where they are used");
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    if (anchors_ == nullptr) fail(mark, "aliases are not supported", write_out);
+    if (awaits_key()) fail(mark, "a key is an alias", "write the key itself");
+    const Entry* value = anchors_->find(anchor);
+    if (value == nullptr) fail(mark, "the alias stands inside the value that it names", write_out);
+    check_depth(mark, depth_of(*value));
+    if (!anchors_->make_room_for(*value)) fail_for_size(mark);
+    add(*value, false);
   }
 
-  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override {
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     if (awaits_key())
       fail(mark, "an entry without a key", "write 'key: value', and a key called null in quotes");
     if (!stack_.empty() && stack_.back().has_key) check_colon(stack_.back());
     Entry entry;
     entry.at = position(mark);
+    keep(mark, anchor, entry);
     add(std::move(entry), !is_null_word(text_.substr(std::min(offset(mark), text_.size()))));
   }
 
-  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+  void OnScalar(const YAML::Mark& begin, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
+    const YAML::Mark mark = behind_anchor(begin);
     if (tag != "!" || text_[offset(mark)] == '!') check_tag(mark, tag);  // it is "!" of quoted text, too
     check_text_at(mark, value, tag == "!");
     if (awaits_key()) return set_key(mark, value);
@@ -76,17 +85,20 @@ class TreeBuilder : public YAML::EventHandler {
     entry.at = position(mark);
     entry.text = value;
     entry.quoted = tag == "!";
+    keep(mark, anchor, entry);
     add(std::move(entry), false);
   }
 
-  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value style) override {
     open(mark, tag, style, Entry::Kind::list);
+    stack_.back().anchor = anchor;
   }
   void OnSequenceEnd() override { close(); }
-  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                   YAML::EmitterStyle::value style) override {
     open(mark, tag, style, Entry::Kind::map);
+    stack_.back().anchor = anchor;
   }
   void OnMapEnd() override { close(); }
 
@@ -94,12 +106,16 @@ class TreeBuilder : public YAML::EventHandler {
   /// A list or map that is not complete.
   struct Open {
     Entry entry;
+    YAML::Mark mark{};
+    YAML::anchor_t anchor = YAML::NullAnchor;
     bool block = false;
     bool has_key = false;  ///< of the value that comes next
     std::string key;
     Position key_at;
     std::size_t key_offset = 0;
   };
+
+  static constexpr const char* write_out = "write the values out where they are used";
 
   static std::size_t offset(const YAML::Mark& mark) { return static_cast<std::size_t>(mark.pos); }
   /// yaml-cpp may report the newline that was added to the text.
@@ -109,6 +125,26 @@ class TreeBuilder : public YAML::EventHandler {
   }
   [[noreturn]] void fail(const YAML::Mark& mark, std::string what, std::string remedy) const {
     throw SyntaxError{position(mark), std::move(what), std::move(remedy)};
+  }
+
+  [[noreturn]] void fail_for_size(const YAML::Mark& mark) const {
+    fail(mark, "aliases of this value make the file too large", write_out);
+  }
+
+  /// yaml-cpp's mark of a value behind an anchor in the same line is the anchor's.
+  YAML::Mark behind_anchor(YAML::Mark mark) const {
+    if (text_.substr(std::min(offset(mark), text_.size()), 1) != "&") return mark;
+    const std::size_t name_end = text_.find_first_of(" \t\n", offset(mark));
+    const std::size_t value = text_.find_first_not_of(" \t", name_end);
+    if (value == std::string_view::npos || text_[value] == '\n') return mark;
+    const int step = static_cast<int>(value - offset(mark));
+    mark.pos += step;
+    mark.column += step;
+    return mark;
+  }
+
+  void keep(const YAML::Mark& mark, YAML::anchor_t anchor, const Entry& value) {
+    if (anchor != YAML::NullAnchor && !anchors_->keep(anchor, value)) fail_for_size(mark);
   }
 
   bool awaits_key() const {
@@ -136,7 +172,8 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void set_key(const YAML::Mark& mark, const std::string& key) {
-    if (key == "<<") fail(mark, "merge keys ('<<') are not supported", "write the keys out");
+    if (key == "<<" && anchors_ == nullptr)
+      fail(mark, "merge keys ('<<') are not supported", "write the keys out");
     Open& map = stack_.back();
     map.has_key = true;
     map.key = key;
@@ -144,13 +181,19 @@ class TreeBuilder : public YAML::EventHandler {
     map.key_offset = offset(mark);
   }
 
-  void open(const YAML::Mark& mark, const std::string& tag, YAML::EmitterStyle::value style,
+  void check_depth(const YAML::Mark& mark, std::size_t more) const {
+    if (stack_.size() + more > deepest)
+      fail(mark, "the values are nested too deep", "a map has at most five levels");
+  }
+
+  void open(const YAML::Mark& begin, const std::string& tag, YAML::EmitterStyle::value style,
             Entry::Kind kind) {
+    const YAML::Mark mark = behind_anchor(begin);
     check_tag(mark, tag);
     if (awaits_key()) fail(mark, "a key is not text", "write 'key: value'");
-    if (stack_.size() == deepest)
-      fail(mark, "the values are nested too deep", "a map has at most five levels");
+    check_depth(mark, 1);
     Open opened;
+    opened.mark = mark;
     opened.block = style == YAML::EmitterStyle::Block;
     opened.entry.kind = kind;
     opened.entry.at = position(mark);
@@ -160,6 +203,8 @@ class TreeBuilder : public YAML::EventHandler {
   void close() {
     Open closed = std::move(stack_.back());
     stack_.pop_back();
+    if (anchors_ != nullptr) merge_keys(closed.entry);
+    keep(closed.mark, closed.anchor, closed.entry);
     add(std::move(closed.entry), closed.block);
   }
 
@@ -182,17 +227,18 @@ class TreeBuilder : public YAML::EventHandler {
   std::string_view text_;
   Position end_;
   bool json_;
+  Anchors* anchors_;
   int documents_ = 0;
   std::vector<Open> stack_;
   Entry root_;
 };
 
 /// With a newline at the end yaml-cpp reports an open quote's beginning to the builder instead of stopping.
-Entry build_tree(const std::string& text, bool json) {
+Entry build_tree(const std::string& text, bool json, Anchors* anchors) {
   std::string yaml = text + '\n';
   indent_with_blanks(yaml);
   std::istringstream in(yaml);
-  TreeBuilder builder(text, json);
+  TreeBuilder builder(text, json, anchors);
   try {
     YAML::Parser parser(in);
     if (!parser.HandleNextDocument(builder))
@@ -200,7 +246,11 @@ Entry build_tree(const std::string& text, bool json) {
     while (parser.HandleNextDocument(builder)) {
     }
   } catch (const YAML::Exception& e) {
-    throw explain(text, e.mark.pos < 0 ? 0 : static_cast<std::size_t>(e.mark.pos), e.msg);
+    const std::size_t at = e.mark.pos < 0 ? 0 : static_cast<std::size_t>(e.mark.pos);
+    if (anchors != nullptr && e.msg.find("anchor is not defined") != std::string::npos)
+      throw SyntaxError{position_of(text, at), "no anchor of that name stands before the alias",
+                        "put '&' and the name before the value that it stands for"};
+    throw explain(text, at, e.msg);
   }
   return std::move(builder).take();
 }
@@ -213,14 +263,15 @@ const Entry* child(const Entry& entry, std::string_view key) {
   return found == entry.children.end() ? nullptr : &*found;
 }
 
-std::optional<Entry> parse_document(std::string_view text, Problems& problems) {
+std::optional<Entry> parse_document(std::string_view text, Problems& problems, Aliases aliases) {
   text = without_byte_order_mark(text);
   if (!check_text(text, problems) || !check_shape(text, problems)) return std::nullopt;
   std::string source(text);
   const bool json = is_json(source);
   if (json && !blank_comments(source, problems)) return std::nullopt;
+  Anchors anchors;
   try {
-    return build_tree(source, json);
+    return build_tree(source, json, aliases == Aliases::read ? &anchors : nullptr);
   } catch (const SyntaxError& e) {
     problems.error(e.at, e.what, e.remedy);
     return std::nullopt;

@@ -33,9 +33,13 @@ const Entry* child(const Entry& entry, std::string_view key);
 
 class Problems;
 
+/// Whether anchors, aliases and merge keys ('<<') are read. Values that an alias copies keep their places.
+enum class Aliases { refused, read };
+
 /// The tree of a YAML or JSON text; nullopt, with the first syntax error in `problems`, if it is neither.
-/// Several documents, tags, aliases, merge keys and keys that are not text are syntax errors, too: YAML
-/// allows them, a map does not need them.
-std::optional<Entry> parse_document(std::string_view text, Problems& problems);
+/// Several documents, tags and keys that are not text are syntax errors, too, and so are aliases unless they
+/// are asked for: YAML allows them, a map does not need them.
+std::optional<Entry> parse_document(std::string_view text, Problems& problems,
+                                    Aliases aliases = Aliases::refused);
 
 }  // namespace coupler::loader
