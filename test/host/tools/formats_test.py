@@ -137,6 +137,18 @@ class Export(Cli):
         fingerprints = {self.coupler("check", file).stdout.split()[-1] for file in (name, "again.yaml")}
         self.assertEqual(len(fingerprints), 1, fingerprints)
 
+    def test_to_home_assistant_and_back_keeps_a_serial_line_and_rtu_over_tcp(self):
+        points = "mapping:\n  coils: {lamp: 0}\n"
+        for where in ("serial: {device: /dev/ttyUSB0, baud: 9600, parity: none, stop_bits: 2}\n",
+                      "address: 10.0.0.7\nport: 4196\nframing: rtu\n"):
+            name = self.file("cell.yaml", f"name: cell\n{where}unit: 17\n{points}")
+            self.coupler("export", name, "--to", "home-assistant", "--out", "configuration.yaml")
+            done = self.coupler("import", "home-assistant", "configuration.yaml")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            for line in (*where.splitlines(), "unit: 17", "timeout: 0.5", "    lamp: 0"):
+                self.assertIn(f"{line}\n", done.stdout)
+            self.assertNotIn("Modbus/TCP", done.stderr)
+
     def test_refuses_a_wrong_map_an_unknown_format_and_a_place_where_it_may_not_write(self):
         self.assertEqual(self.coupler("export", self.file("bad.yaml", "x"), "--to", "csv").returncode, 1)
         name = self.file("cell.yaml", MAP)

@@ -62,8 +62,7 @@ void add_sensor(Entity& entity) {
 void add_binary_sensor(Entity& entity) {
   Settings& settings = entity.settings();
   const Table table = Entity::table_of("input_type", "coil", settings);
-  const auto slaves = settings.whole("slave_count", most_elements);
-  const unsigned count = 1 + settings.whole("virtual_count", most_elements).value_or(slaves.value_or(0));
+  const unsigned count = elements_of(settings, most_elements);
   const loader::Position at = entity.given().at;
   warn_of_reading_only(table, entity);
   if (holds_bits(table)) {

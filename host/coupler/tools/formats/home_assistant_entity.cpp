@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "coupler/tools/formats/home_assistant_points.hpp"
+#include "coupler/tools/formats/home_assistant_text.hpp"
 #include "coupler/tools/formats/map_tree.hpp"
 
 namespace coupler::formats {
@@ -32,13 +33,27 @@ constexpr std::string_view own_keys[] = {"unique_id", "device_class",     "state
 
 }  // namespace
 
+const Entry* unit_of(const Entry& entity) {
+  const Entry* address = loader::child(entity, "device_address");
+  return address != nullptr ? address : loader::child(entity, "slave");
+}
+
+void Entity::add(FoundPoint point) {
+  const Entry* unit = unit_of(given_);
+  UnitPoints& points = points_[unit_];
+  points.begin_at(unit != nullptr ? unit->at : given_.at);
+  points.add(std::move(point), settings_.problems());
+}
+
 bool Entity::read_place() {
   name_ = settings_.text("name", "");
   const auto address = settings_.whole("address", 65535);
   const auto slave = settings_.whole("slave", 255);
   unit_ = settings_.whole("device_address", 255).value_or(slave.value_or(1));
   interval_ = settings_.whole("scan_interval", 31'536'000).value_or(usual_interval);
-  if (name_.empty() || settings_.find("address") == nullptr)
+  const Entry* place = loader::child(given_, "address");
+  const bool is_secret = place != nullptr && !secret_of(*place).empty();  // which has been reported
+  if (name_.empty() || (settings_.find("address") == nullptr && !is_secret))
     settings_.problems().error(
         given_.at, fmt::format("an entity without '{}'", name_.empty() ? "name" : "address"), "give it one");
   if (name_.empty() || !address) return false;

@@ -305,8 +305,9 @@ std::string hub_of(const Map& map) {
   const auto seconds = [](std::chrono::milliseconds time) {
     return std::chrono::ceil<std::chrono::seconds>(time).count();
   };
+  const double timeout = std::chrono::duration<double>(map.connection.timeout).count();
   std::string hub = fmt::format("modbus:\n  - name: {}\n{}    timeout: {}\n", text(map.name),
-                                place_of(map.connection), seconds(map.connection.timeout));
+                                place_of(map.connection), timeout);
   if (map.limits.connect_delay.count() > 0)
     hub += fmt::format("    delay: {}\n", seconds(map.limits.connect_delay));
   if (map.limits.request_gap.count() > 0)
@@ -321,6 +322,9 @@ Export write_home_assistant(const Map& map) {
   if (!map.connection.present())
     out.warnings.add("the map does not have the device's address, so localhost is written",
                      "write the address after 'host:'");
+  if (map.connection.serial.present() && map.connection.serial.rs485)
+    out.warnings.add("'rs485' is left out, since Home Assistant does not switch the direction of the line",
+                     "use an adapter that does it by itself");
   const Entities entities = EntityWriter(map, out.warnings).write();
   warn_of_node_and_driver_keys(map, out.warnings);
   out.text = "# Made by `coupler export --to home-assistant`.\n" + hub_of(map);

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <set>
+#include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include "coupler/map/loader/scalar.hpp"
+#include "coupler/tools/formats/foreign_connection.hpp"
 #include "coupler/tools/formats/home_assistant_points.hpp"
+#include "coupler/tools/formats/home_assistant_text.hpp"
 #include "coupler/tools/formats/importers.hpp"
 #include "coupler/tools/formats/map_tree.hpp"
 
@@ -15,92 +18,6 @@ namespace {
 using loader::Entry;
 using loader::Position;
 using loader::Problems;
-using loader::shown;
-
-std::string_view first_line(std::string_view text) {
-  return text.substr(0, std::min(text.find('\n'), text.size()));
-}
-
-/// "modbus:", and "modbus second:" of a configuration in several parts.
-bool is_modbus_key(std::string_view line) {
-  const std::string_view key = line.substr(0, line.find(':'));
-  return key.size() < line.size() && (key == "modbus" || key.substr(0, 7) == "modbus ");
-}
-
-/// Blank lines in place of all that stands below other keys than `modbus:`, which need not be YAML that a
-/// map's loader reads. False if there is no such key.
-bool keep_modbus_only(std::string& text) {
-  std::string kept;
-  bool keep = false;
-  bool any = false;
-  for (std::string_view rest = text; !rest.empty();) {
-    const std::string_view line = first_line(rest);
-    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-    const bool begins_key = !line.empty() &&
-                            std::string_view(" \t#\r").find(line[0]) == std::string_view::npos &&
-                            line.substr(0, 2) != "- " && line != "-";
-    if (begins_key) keep = is_modbus_key(line);
-    any = any || keep;
-    if (keep) kept += line;
-    kept += '\n';
-  }
-  if (any) text = std::move(kept);
-  return any;
-}
-
-/// The tags of values, as `!secret` and `!include`, become plain text of the same length. Returns where they
-/// were.
-std::set<std::pair<int, int>> blank_tags(std::string& text) {
-  std::set<std::pair<int, int>> places;
-  int line = 1;
-  std::size_t line_begins = 0;
-  char quote = '\0';
-  char before = '\n';  // the last character that is not a blank
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '\n') {
-      ++line;
-      line_begins = i + 1;
-      quote = '\0';
-    } else if (quote != '\0') {
-      if (c == quote) quote = '\0';
-    } else if (c == '#' && i > line_begins && (text[i - 1] == ' ' || text[i - 1] == '\t')) {
-      i = std::min(text.find('\n', i), text.size()) - 1;
-      continue;
-    } else if ((c == '"' || c == '\'') &&
-               std::string_view("\n:-,[{").find(before) != std::string_view::npos) {
-      quote = c;
-    } else if (c == '!' && std::string_view(":-,[{").find(before) != std::string_view::npos) {
-      places.emplace(line, static_cast<int>(i - line_begins) + 1);
-      text[i] = '~';
-    }
-    if (c != ' ' && c != '\t' && c != '\r') before = c;
-  }
-  return places;
-}
-
-/// A secret is left out with a warning; what stands in other files is an error.
-void take_tags_out(Entry& entry, const std::set<std::pair<int, int>>& places, Problems& problems) {
-  const auto is_tagged = [&](const Entry& child) {
-    if (child.kind != Entry::Kind::scalar || places.count({child.at.line, child.at.column}) == 0)
-      return false;
-    const std::string tag = '!' + child.text.substr(1, child.text.find(' ') - 1);
-    const std::string where = child.key.empty() ? "the value" : fmt::format("'{}'", child.key);
-    if (tag == "!secret")
-      problems.warning(child.at, fmt::format("{} is a secret, which is not read, so it is left out", where),
-                       "write it into the map, or in the place of the tag");
-    else if (tag.substr(0, 8) == "!include")
-      problems.error(child.at, fmt::format("{} stands in another file", where),
-                     "give that file, or put its text in the place of the tag");
-    else
-      problems.error(child.at, fmt::format("the tag {} of {} is not known", shown(tag), where),
-                     "write the value in its place");
-    return true;
-  };
-  entry.children.erase(std::remove_if(entry.children.begin(), entry.children.end(), is_tagged),
-                       entry.children.end());
-  for (Entry& child : entry.children) take_tags_out(child, places, problems);
-}
 
 /// Home Assistant takes one where a list may stand.
 Span<const Entry> list_of(const Entry& entry) {
@@ -143,20 +60,11 @@ class HubReader {
   HubReader(const Entry& hub, Problems& problems) : hub_(hub), settings_(hub, problems) {}
 
   std::vector<Entry> read() {
-    Problems& problems = settings_.problems();
-    const std::string type = settings_.text("type", "");
-    if (type == "serial" || type == "udp" || type == "rtuovertcp")
-      problems.warning(settings_.find("type")->at,
-                       fmt::format("the hub is of the type '{}', but a map is for Modbus/TCP", type),
-                       "give the address of a gateway in the map");
-    if (type == "serial")
-      for (const std::string_view key : {"port", "baudrate", "bytesize", "method", "parity", "stopbits"})
-        settings_.ignore(key);  // the warning above is about them
-    if (const std::string host = settings_.text("host", ""); !host.empty())
-      keys_.push_back(scalar("address", host, settings_.find("host")->at));
-    if (type != "serial")
-      if (const auto port = settings_.whole("port", 65535))
-        keys_.push_back(scalar("port", fmt::to_string(*port), settings_.find("port")->at));
+    transport_ = read_transport(settings_.find("type"), {}, settings_.problems());
+    if (transport_.serial)
+      add_line();
+    else
+      add_address();
     add_timeout();
     add_limits();
     for (const std::string_view key : {"name", "type"}) settings_.ignore(key);
@@ -166,10 +74,34 @@ class HubReader {
   }
 
  private:
+  void add_line() {
+    constexpr LineKeys keys = {"port", "baudrate", "bytesize", "parity", "stopbits"};
+    for (const std::string_view key : {keys.device, keys.baud, keys.data_bits, keys.parity, keys.stop_bits})
+      settings_.ignore(key);
+    if (const Entry* host = settings_.find("host"))
+      settings_.problems().error(
+          host->at, "a hub on a serial line has no 'host'",
+          "write 'type: rtuovertcp' if the device is at that address, or remove 'host'");
+    read_framing(settings_.find("method"), transport_, settings_.problems());
+    keys_.push_back(read_serial_line(hub_, keys, settings_.problems()));
+  }
+
+  void add_address() {
+    if (const std::string host = settings_.text("host", ""); !host.empty())
+      keys_.push_back(scalar("address", host, settings_.find("host")->at));
+    if (const auto port = settings_.whole("port", 65535))
+      keys_.push_back(scalar("port", fmt::to_string(*port), settings_.find("port")->at));
+    if (transport_.rtu) keys_.push_back(rtu_framing(settings_.find("type")->at));
+  }
+
+  /// Home Assistant waits for 3 s if nothing is said, as a map does with Modbus/TCP.
   void add_timeout() {
     constexpr double longest = 60;
     const double timeout = settings_.number("timeout").value_or(0);
-    if (timeout <= 0) return;
+    if (timeout <= 0) {
+      if (transport_.rtu) keys_.push_back(scalar("timeout", "3", hub_.at));
+      return;
+    }
     const Position at = settings_.find("timeout")->at;
     if (timeout > longest)
       settings_.problems().warning(
@@ -193,10 +125,67 @@ class HubReader {
 
   const Entry& hub_;
   Settings settings_;
+  Transport transport_;
   std::vector<Entry> keys_;
 };
 
+/// The unit id of a hub's entities, as far as it is a secret.
+struct SecretUnit {
+  const Entry* first = nullptr;  ///< where it stands first; nullptr: unit ids are numbers
+  bool is_only_one = true;       ///< of all entities
+};
+
+/// Looks for unit ids that are secrets. An error where some entities have another one: they may be of one
+/// unit or of several.
+SecretUnit find_secret_unit(const Entry& hub, Problems& problems) {
+  SecretUnit found;
+  const Entry* first = nullptr;  // entity
+  std::string_view first_secret;
+  for (const std::string_view platform : entity_platforms()) {
+    const Entry* entities = loader::child(hub, platform);
+    if (entities == nullptr) continue;
+    for (const Entry& entity : list_of(*entities)) {
+      const Entry* unit = unit_of(entity);
+      const std::string_view secret = unit != nullptr ? secret_of(*unit) : std::string_view{};
+      if (first == nullptr) {
+        first = &entity;
+        first_secret = secret;
+        if (!secret.empty()) found.first = unit;
+      } else if (secret != first_secret) {
+        problems.error(
+            unit != nullptr ? unit->at : entity.at,
+            fmt::format("it is not known whether this entity is of the same unit as the one in line {}: "
+                        "a unit id that is a secret is not read",
+                        first->at.line),
+            "write the unit ids of all entities as numbers");
+        found.is_only_one = false;
+        return found;
+      }
+    }
+  }
+  return found;
+}
+
+void report_old_form(const HomeAssistantFile& file, bool is_all, Problems& problems) {
+  for (const Position at : file.old_form) {
+    const char* what =
+        "'platform: modbus' is an old form that Home Assistant no longer reads, so its entities are left out";
+    const char* remedy =
+        "write them below 'sensors:', 'binary_sensors:', 'switches:' or 'climates:' of the hub, with "
+        "'address' in place of 'register' and 'coil', and 'input_type' in place of 'register_type'";
+    if (is_all)
+      problems.error(at, what, remedy);
+    else
+      problems.warning(at, what, remedy);
+  }
+}
+
 std::vector<ForeignUnit> read_hub(const Entry& hub, Problems& problems) {
+  const SecretUnit secret = find_secret_unit(hub, problems);
+  if (!secret.is_only_one) return {};
+  if (secret.first != nullptr)
+    problems.warning(secret.first->at, "the unit id is a secret, which is not read, so it is left out",
+                     "give it with --unit, or write it into the map");
   const std::vector<Entry> device = HubReader(hub, problems).read();
   HubPoints points;
   ConversionWarnings losses;
@@ -210,7 +199,8 @@ std::vector<ForeignUnit> read_hub(const Entry& hub, Problems& problems) {
   std::vector<ForeignUnit> units;
   for (auto& [number, found] : points) {
     ForeignUnit unit;
-    unit.unit = number;
+    if (secret.first == nullptr) unit.unit = number;
+    unit.unit_at = found.at();
     unit.map = section("", hub.at);
     if (loader::child(hub, "name") != nullptr)
       unit.map.children.push_back(scalar(
@@ -227,16 +217,13 @@ std::vector<ForeignUnit> read_hub(const Entry& hub, Problems& problems) {
 
 std::vector<ForeignUnit> read_home_assistant(std::string_view text, const ImportOptions& options,
                                              Problems& problems) {
-  std::string kept(text);
-  const bool whole = keep_modbus_only(kept);
-  const auto places = blank_tags(kept);
-  auto root = loader::parse_document(kept, problems);
-  if (!root) return {};
-  take_tags_out(*root, places, problems);
+  const auto file = read_home_assistant_file(text, problems);
+  if (!file) return {};
   std::vector<const Entry*> hubs;
-  for (const Entry& part : whole ? Span<const Entry>(root->children) : Span<const Entry>(&*root, 1))
+  for (const Entry& part : file->parts)
     for (const Entry& hub : list_of(part))
       if (is_hub(hub)) hubs.push_back(&hub);
+  report_old_form(*file, hubs.empty(), problems);
   if (hubs.empty() && problems.has_errors()) return {};
   const Entry* hub = choose(hubs, options.device, problems);
   return hub != nullptr ? read_hub(*hub, problems) : std::vector<ForeignUnit>{};

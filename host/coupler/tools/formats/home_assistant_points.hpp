@@ -72,6 +72,12 @@ class UnitPoints {
  public:
   void add(FoundPoint point, loader::Problems& problems);
 
+  /// Where its unit id stands first, or its first entity.
+  loader::Position at() const { return at_; }
+  void begin_at(loader::Position at) {
+    if (at_.line == 0) at_ = at;
+  }
+
   /// `mapping:`, and the rate at which the map is read.
   std::vector<loader::Entry> take(loader::Position at);
 
@@ -86,6 +92,7 @@ class UnitPoints {
   static const Owner* owner_of(const Owners& owners, const FoundPoint& point, unsigned address);
   static void claim(Owners& owners, const FoundPoint& point, unsigned address);
 
+  loader::Position at_;
   std::vector<FoundPoint> points_;
   Owners read_;
   Owners written_;
@@ -103,6 +110,9 @@ struct RegisterValue {
   std::vector<loader::Entry> keys;  ///< type, order, length …
   bool is_number = true;
 };
+
+/// How many values follow each other: one, and those of `virtual_count` or `slave_count`, its older name.
+unsigned elements_of(Settings& settings, unsigned most);
 
 /// Empty, with the reason in the problems, if the map has no type for it.
 std::vector<RegisterValue> read_data_type(Settings& settings);
@@ -144,7 +154,7 @@ class Entity {
   FoundPoint with_value(const RegisterValue& value, const std::string& suffix, Table table, unsigned address,
                         PointUse use) const;
   void scale(FoundPoint& point, double gain, double offset) const;
-  void add(FoundPoint point) { points_[unit_].add(std::move(point), settings_.problems()); }
+  void add(FoundPoint point);
 
   /// Adds a number or a list of them. The second one of a name is NAME_2: a map wants each name once.
   void add_numbers(const loader::Entry& given, const std::string& name, Names& names) const;
@@ -159,6 +169,9 @@ class Entity {
   unsigned unit_ = 1;
   unsigned interval_ = 0;
 };
+
+/// Where an entity says its unit id: its `device_address`, or else its `slave`; nullptr: nowhere.
+const loader::Entry* unit_of(const loader::Entry& entity);
 
 /// Reads one climate.
 void add_climate(Entity& entity);

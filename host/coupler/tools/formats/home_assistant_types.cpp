@@ -232,15 +232,32 @@ const TypeOf* numeric_type(const std::string& given, std::optional<unsigned> cou
 
 }  // namespace
 
+unsigned elements_of(Settings& settings, unsigned most) {
+  const auto values = settings.whole("virtual_count", most);
+  const auto slaves = settings.whole("slave_count", most);
+  if (values && slaves && *values != *slaves)
+    settings.problems().error(settings.find("slave_count")->at,
+                              "'slave_count' and 'virtual_count' mean the same, but differ",
+                              "remove one of the two");
+  return 1 + values.value_or(slaves.value_or(0));
+}
+
 std::vector<RegisterValue> read_data_type(Settings& settings) {
   const std::string type = settings.text("data_type", "int16");
   const auto count = settings.whole("count", modbus::max_read_registers);
   const Entry* structure = settings.find("structure");
-  const auto slaves = settings.whole("slave_count", modbus::max_read_registers);
-  const unsigned elements =
-      1 + settings.whole("virtual_count", modbus::max_read_registers).value_or(slaves.value_or(0));
+  const unsigned elements = elements_of(settings, modbus::max_read_registers);
   const auto swap = read_swap(settings);
   if (!swap) return {};
+  if (elements > 1 && (type == "custom" || type == "string")) {
+    const Entry* given = settings.find("virtual_count");
+    if (given == nullptr) given = settings.find("slave_count");
+    settings.problems().warning(
+        given->at,
+        fmt::format("'{}' is left out: Home Assistant repeats numbers, not 'data_type: {}'", given->key,
+                    type),
+        "write an entity for each of the values");
+  }
   if (type == "custom") {
     if (structure != nullptr)
       return StructureReader(*structure, *swap, settings.problems()).read(count.value_or(1));

@@ -227,7 +227,8 @@ ImportResult import_text(const Importer& importer, std::string_view text, std::s
   std::vector<ImportedMap> maps;
   for (ForeignUnit& unit : units) {
     set_name(unit.map, options, file, several && unit.unit ? fmt::format("_{}", *unit.unit) : "");
-    if (unit.unit) set(unit.map, scalar("unit", fmt::to_string(*unit.unit), unit.map.at));
+    const loader::Position unit_at = unit.unit_at.line > 0 ? unit.unit_at : unit.map.at;
+    if (unit.unit) set(unit.map, scalar("unit", fmt::to_string(*unit.unit), unit_at));
     mend_point_names(unit.map, problems);
     spell_types(unit.map);
     maps.push_back(finish(unit, comment_of(importer, file), problems));

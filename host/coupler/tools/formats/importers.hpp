@@ -22,6 +22,7 @@ namespace coupler::formats {
 struct ForeignUnit {
   std::optional<unsigned> unit;  ///< nullopt: the file does not say
   loader::Entry map;
+  loader::Position unit_at{};  ///< where it says the unit, if that is not where the map is
 };
 
 /// How a table is read, besides what it says itself.

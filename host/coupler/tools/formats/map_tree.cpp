@@ -26,12 +26,14 @@ bool is_plain_character(char c) {
 bool is_plain(std::string_view text) {
   if (text.empty() || !std::all_of(text.begin(), text.end(), is_plain_character)) return false;
   const bool is_number = text.size() > 1 && loader::is_digit(text[1]);
-  return (loader::is_letter(text[0]) || loader::is_digit(text[0]) || is_number) && lower(text) != "null";
+  const bool begins_plain = loader::is_letter(text[0]) || loader::is_digit(text[0]) || text[0] == '/';
+  return (begins_plain || is_number) && lower(text) != "null";
 }
 
 /// Can only be text, with quotes or without.
 bool is_word(std::string_view text) {
-  return loader::is_letter(text[0]) && !loader::parse_boolean(text) && !loader::parse_number(text);
+  return text[0] == '/' ||
+         (loader::is_letter(text[0]) && !loader::parse_boolean(text) && !loader::parse_number(text));
 }
 
 std::string in_quotes(std::string_view text) {

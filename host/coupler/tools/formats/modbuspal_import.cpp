@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <cstring>
 #include <set>
+#include <vector>
 
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
 #include "coupler/codec/type_name.hpp"
 #include "coupler/map/loader/scalar.hpp"
+#include "coupler/tools/formats/foreign_connection.hpp"
 #include "coupler/tools/formats/map_tree.hpp"
+#include "coupler/tools/formats/xml_places.hpp"
 
 namespace coupler::formats {
 namespace {
@@ -19,24 +22,6 @@ using loader::Entry;
 using loader::Position;
 using loader::Problems;
 using loader::shown;
-
-/// Line and column of an offset, by binary search: there may be many.
-class Lines {
- public:
-  explicit Lines(std::string_view text) {
-    for (std::size_t i = 0; i < text.size(); ++i)
-      if (text[i] == '\n') starts_.push_back(i + 1);
-  }
-
-  Position at(std::ptrdiff_t offset) const {
-    const auto place = static_cast<std::size_t>(std::max<std::ptrdiff_t>(offset, 0));
-    const auto after = std::upper_bound(starts_.begin(), starts_.end(), place);
-    return {static_cast<int>(after - starts_.begin()), static_cast<int>(place - *(after - 1)) + 1};
-  }
-
- private:
-  std::vector<std::size_t> starts_{0};
-};
 
 /// One register or coil of a ModbusPal project.
 struct Value {
@@ -123,13 +108,14 @@ Entry points_of(std::vector<Value> values, Table table, Problems& problems) {
 
 class ProjectReader {
  public:
-  ProjectReader(const Lines& lines, Problems& problems) : lines_(lines), problems_(problems) {}
+  ProjectReader(const XmlPlaces& places, Problems& problems) : places_(places), problems_(problems) {}
 
   std::vector<ForeignUnit> read(const pugi::xml_node& project) {
     std::vector<ForeignUnit> units;
+    read_links(project.child("links"));
     for (const pugi::xml_node& node : project) {
       if (std::strcmp(node.name(), "slave") == 0)
-        units.push_back(read_slave(node, project));
+        units.push_back(read_slave(node));
       else if (node.type() == pugi::node_element && std::strcmp(node.name(), "idgen") != 0 &&
                std::strcmp(node.name(), "links") != 0)
         left_out(node, fmt::format("'{}' of the simulation", node.name()));
@@ -141,11 +127,34 @@ class ProjectReader {
   }
 
  private:
-  Position at(const pugi::xml_node& node) const { return lines_.at(node.offset_debug()); }
+  Position at(const pugi::xml_node& node) const { return places_.at(node.offset_debug()); }
 
   void left_out(const pugi::xml_node& node, const std::string& what) {
     problems_.warning(at(node), what + " is not carried over: a map does not simulate values",
                       "no action is needed");
+  }
+
+  /// The link that was chosen when the project was saved. The defaults are ModbusPal's.
+  void read_links(const pugi::xml_node& links) {
+    constexpr LineKeys keys = {"com", "baudrate", "", "parity", "stops", "9600", "even", "1"};
+    is_serial_ = lower(links.attribute("selected").value()) == "serial";
+    if (!is_serial_) {
+      if (const auto port = links.child("tcpip").attribute("port"))
+        connection_.push_back(scalar("port", port.value(), at(links.child("tcpip"))));
+      return;
+    }
+    const pugi::xml_node serial = links.child("serial");
+    Entry line = section("serial", at(serial ? serial : links));
+    for (const std::string_view key : {keys.device, keys.baud, keys.parity, keys.stop_bits})
+      if (const pugi::xml_attribute given = serial.attribute(std::string(key).c_str()))
+        line.children.push_back(scalar(key, given.value(), places_.attribute(serial.offset_debug(), key)));
+    connection_.push_back(read_serial_line(line, keys, problems_));
+    const pugi::xml_node flow_control = serial.child("flowcontrol");
+    for (const char* key : {"xonxoff", "rtscts"})
+      if (flow_control.attribute(key).as_bool())
+        problems_.warning(places_.attribute(flow_control.offset_debug(), key),
+                          fmt::format("the flow control '{}' is not carried over: RTU has none", key),
+                          "switch it off in the device");
   }
 
   /// "5", or "192.168.0.7(5)".
@@ -155,7 +164,7 @@ class ProjectReader {
     std::string_view number = id;
     if (bracket != std::string_view::npos && id.back() == ')') {
       number = id.substr(bracket + 1, id.size() - bracket - 2);
-      if (bracket > 0)
+      if (bracket > 0 && !is_serial_)
         unit.map.children.push_back(scalar("address", std::string(id.substr(0, bracket)), at(slave), true));
     }
     const auto value = loader::parse_unsigned(number);
@@ -166,12 +175,11 @@ class ProjectReader {
                       "give the slave a number from 0 to 255");
   }
 
-  ForeignUnit read_slave(const pugi::xml_node& slave, const pugi::xml_node& project) {
+  ForeignUnit read_slave(const pugi::xml_node& slave) {
     ForeignUnit unit;
     unit.map = section("", at(slave));
     read_id(slave, unit);
-    if (const auto port = project.child("links").child("tcpip").attribute("port"))
-      unit.map.children.push_back(scalar("port", port.value(), at(project.child("links").child("tcpip"))));
+    unit.map.children.insert(unit.map.children.end(), connection_.begin(), connection_.end());
     if (slave.attribute("enabled").value() == std::string_view("false"))
       problems_.warning(at(slave), "the slave is switched off in the project, which a map cannot express",
                         "delete its map if the device does not exist");
@@ -230,15 +238,17 @@ class ProjectReader {
     return value;
   }
 
-  const Lines& lines_;
+  const XmlPlaces& places_;
   Problems& problems_;
+  bool is_serial_ = false;
+  std::vector<Entry> connection_;  ///< of all slaves
 };
 
 /// Refuses a DOCTYPE that declares entities. None is ever read.
-bool check_declaration(const pugi::xml_document& document, const Lines& lines, Problems& problems) {
+bool check_declaration(const pugi::xml_document& document, const XmlPlaces& places, Problems& problems) {
   for (const pugi::xml_node& node : document) {
     if (node.type() != pugi::node_doctype || std::strchr(node.value(), '[') == nullptr) continue;
-    problems.error(lines.at(node.offset_debug()),
+    problems.error(places.at(node.offset_debug()),
                    "the file declares entities of its own, which ModbusPal never writes",
                    "remove what stands between '[' and ']' after DOCTYPE");
     return false;
@@ -250,23 +260,23 @@ bool check_declaration(const pugi::xml_document& document, const Lines& lines, P
 
 std::vector<ForeignUnit> read_modbuspal(std::string_view text, const ImportOptions& /*options*/,
                                         Problems& problems) {
-  const Lines lines(text);
+  const XmlPlaces places(text);
   pugi::xml_document document;
   const auto outcome = document.load_buffer(text.data(), text.size(),
                                             pugi::parse_default | pugi::parse_doctype, pugi::encoding_utf8);
   if (!outcome) {
-    problems.error(lines.at(outcome.offset), fmt::format("this is not XML: {}", outcome.description()),
+    problems.error(places.at(outcome.offset), fmt::format("this is not XML: {}", outcome.description()),
                    "give a project that ModbusPal saved");
     return {};
   }
-  if (!check_declaration(document, lines, problems)) return {};
+  if (!check_declaration(document, places, problems)) return {};
   const pugi::xml_node project = document.child("modbuspal_project");
   if (!project) {
     problems.error({1, 1}, "there is no <modbuspal_project> in the file",
                    "give a project that ModbusPal saved");
     return {};
   }
-  return ProjectReader(lines, problems).read(project);
+  return ProjectReader(places, problems).read(project);
 }
 
 }  // namespace coupler::formats

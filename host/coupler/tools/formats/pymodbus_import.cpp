@@ -8,6 +8,7 @@
 
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/modbus/limits.hpp"
+#include "coupler/tools/formats/foreign_connection.hpp"
 #include "coupler/tools/formats/importers.hpp"
 #include "coupler/tools/formats/map_tree.hpp"
 #include "coupler/tools/formats/pymodbus_memory.hpp"
@@ -61,25 +62,39 @@ const Entry* choose_server(const Entry& root, Problems& problems) {
   return server;
 }
 
+/// An address that listens on all interfaces is not an address to connect to.
+bool is_address(const std::string& host) { return !host.empty() && host != "0.0.0.0" && host != "::"; }
+
+void read_device_id(const Entry& entry, ForeignUnit& unit, Problems& problems) {
+  const auto number = loader::parse_unsigned(entry.text);
+  if (number && *number < 256)
+    unit.unit = static_cast<unsigned>(*number);
+  else
+    problems.warning(entry.at, fmt::format("{} is not a unit id, so it is left out", shown(entry.text)),
+                     "give the device's own with --unit");
+  unit.unit_at = entry.at;
+}
+
+/// The defaults are those of pymodbus' ModbusSerialServer and ModbusTcpServer.
 void read_server(const Entry& server, ForeignUnit& unit, Problems& problems) {
+  constexpr LineKeys line = {"port", "baudrate", "bytesize", "parity", "stopbits", "19200", "none", "1"};
+  Transport transport = read_transport(loader::child(server, "comm"), {}, problems);
+  read_framing(loader::child(server, "framer"), transport, problems);
+  std::vector<Entry>& keys = unit.map.children;
+  if (transport.serial)
+    keys.push_back(read_serial_line(server, line, problems));
+  else if (transport.rtu)
+    keys.push_back(rtu_framing(server.key_at));
   ConversionWarnings own;
   for (const Entry& entry : server.children) {
-    if (entry.key == "comm") {
-      if (entry.text != "tcp")
-        problems.warning(
-            entry.at,
-            fmt::format("the server is of the kind {}, but a map is for Modbus/TCP", shown(entry.text)),
-            "choose a server of the kind tcp, or give the address of a gateway in the map");
-    } else if (entry.key == "port") {
-      if (loader::parse_unsigned(entry.text))
-        unit.map.children.push_back(scalar("port", entry.text, entry.at));
+    if (entry.key == "comm" || entry.key == "framer" || (transport.serial && line.has(entry.key))) continue;
+    if (entry.key == "port") {
+      keys.push_back(scalar("port", entry.text, entry.at));
     } else if (entry.key == "host") {
-      // An address that listens on all interfaces is not an address to connect to.
-      if (!entry.text.empty() && entry.text != "0.0.0.0" && entry.text != "::")
-        unit.map.children.push_back(scalar("address", entry.text, entry.at));
+      if (!transport.serial && is_address(entry.text))
+        keys.push_back(scalar("address", entry.text, entry.at));
     } else if (entry.key == "device_id") {
-      const auto number = loader::parse_unsigned(entry.text);
-      if (number && *number < 256) unit.unit = static_cast<unsigned>(*number);
+      read_device_id(entry, unit, problems);
     } else {
       own.add("what only the simulator uses is not carried over", "no action is needed", entry.key);
     }

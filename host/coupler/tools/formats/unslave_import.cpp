@@ -9,6 +9,7 @@
 #include "coupler/map/loader/document.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/table.hpp"
+#include "coupler/tools/formats/foreign_connection.hpp"
 #include "coupler/tools/formats/map_tree.hpp"
 
 namespace coupler::formats {
@@ -126,23 +127,53 @@ std::optional<ForeignUnit> read_slave(const Entry& slave, Problems& problems) {
   return unit;
 }
 
-/// The connection. Warns of keys that belong to the simulator.
+/// Where the settings of the serial port stand: in the section `port`, as in the manual, or `serial`; or
+/// beside `port`. nullptr: nowhere.
+const Entry* line_of(const Entry& root) {
+  for (const std::string_view key : {"port", "serial"}) {
+    const Entry* line = loader::child(root, key);
+    if (line != nullptr && line->kind == Entry::Kind::map) return line;
+    if (line != nullptr && line->kind == Entry::Kind::scalar && key == "port") return &root;
+  }
+  return nullptr;
+}
+
+LineKeys keys_of(const Entry& line) {
+  return {loader::child(line, "name") != nullptr ? "name" : "port", "baudRate", "dataBits", "parity",
+          "stopBits"};
+}
+
+void report_simulators(const Entry& entry, Problems& problems) {
+  problems.warning(entry.key_at,
+                   fmt::format("{} is not carried over: it belongs to the simulator", shown(entry.key)),
+                   "no action is needed");
+}
+
+/// The connection: a serial line unless `mode` says something else. Warns of keys that belong to the
+/// simulator.
 std::vector<Entry> read_device(const Entry& root, Problems& problems) {
   std::vector<Entry> keys;
   const Entry* mode = loader::child(root, "mode");
-  const bool tcp = mode != nullptr && lower(mode->text) == "tcp";
-  if (!tcp)
-    problems.warning(mode != nullptr ? mode->at : root.at,
-                     "the device is on a serial line, but a map is for Modbus/TCP",
-                     "give the address of a gateway to it in the map");
+  const Transport transport = read_transport(mode, {true, true}, problems);
+  const Entry none = section("serial", root.at);
+  const Entry* line = line_of(root);
+  const Entry& given = line != nullptr ? *line : none;
+  const LineKeys line_keys = keys_of(given);
+  if (transport.serial) {
+    keys.push_back(read_serial_line(given, line_keys, problems));
+    if (line != &root)
+      for (const Entry& entry : given.children)
+        if (!line_keys.has(entry.key)) report_simulators(entry, problems);
+  } else if (transport.rtu) {
+    keys.push_back(rtu_framing(mode->at));
+  }
   for (const Entry& entry : root.children) {
-    if (entry.key == "tcpPort")
-      keys.push_back(scalar("port", entry.text, entry.at));
-    else if (entry.key != "slaves" && entry.key != "mode" && entry.key != "version" &&
-             (entry.key != "port" || tcp))
-      problems.warning(entry.key_at,
-                       fmt::format("{} is not carried over: it belongs to the simulator", shown(entry.key)),
-                       "no action is needed");
+    if (entry.key == "tcpPort") {
+      if (!transport.serial) keys.push_back(scalar("port", entry.text, entry.at));
+    } else if (&entry != line && !(line == &root && line_keys.has(entry.key)) && entry.key != "slaves" &&
+               entry.key != "mode" && entry.key != "version") {
+      report_simulators(entry, problems);
+    }
   }
   return keys;
 }

@@ -230,12 +230,6 @@ TEST(HomeAssistantImport, What_a_map_has_no_key_for_is_told) {
                     HasSubstr("'min_value' changes what Home Assistant shows"),
                     HasSubstr("warning: 'colour' is not carried over: a map has no key for it"),
                     HasSubstr("warning: 'retries' is not carried over: a map has no key for it")));
-  const Imported serial(
-      "home-assistant",
-      "modbus: {name: h, type: serial, port: /dev/ttyUSB0, baudrate: 9600, bytesize: 8, method: rtu, "
-      "parity: E, stopbits: 1, sensors: [{name: s, address: 0}]}");
-  EXPECT_THAT(serial.said, AllOf(HasSubstr("the hub is of the type 'serial', but a map is for Modbus/TCP"),
-                                 Not(HasSubstr("baudrate"))));
 }
 
 TEST(HomeAssistantImport, Wrong_files_are_refused_where_they_are_wrong) {
@@ -290,6 +284,29 @@ mapping:
   ASSERT_EQ(imported.result.maps.size(), 1U) << imported.said;
   EXPECT_EQ(imported.result.maps[0].map->map().fingerprint, loaded.map->map().fingerprint)
       << exported.text << imported.text();
+}
+
+TEST(HomeAssistantImport, The_connection_comes_back_from_the_export) {
+  const std::string points = "mapping: {coils: {lamp: 0}, input_registers: {a: {address: 3, type: INT}}}\n";
+  for (const std::string where :
+       {"serial: {device: /dev/ttyUSB0, baud: 9600, parity: none, stop_bits: 2}\nunit: 17\ntimeout: 250ms\n",
+        "serial: {device: /dev/serial/by-id/usb-1, parity: odd}\nlimits: {request_gap: 5ms}\n",
+        "address: 10.0.0.7\nport: 4196\nframing: rtu\nunit: 3\n", "address: 10.0.0.7\ntimeout: 1500ms\n"}) {
+    const LoadResult loaded = load_map("name: cell\n" + where + points, "cell.yaml");
+    ASSERT_NE(loaded.map, nullptr) << lines_of(loaded.diagnostics);
+    const Map& map = loaded.map->map();
+    const Imported imported("home-assistant", formats::write_home_assistant(map).text);
+    ASSERT_EQ(imported.result.maps.size(), 1U) << imported.said;
+    const Map& again = imported.result.maps[0].map->map();
+    EXPECT_EQ(again.connection.serial, map.connection.serial) << imported.text();
+    EXPECT_EQ(again.connection.framing, map.connection.framing);
+    EXPECT_EQ(again.connection.address, map.connection.address);
+    EXPECT_EQ(again.connection.port, map.connection.port);
+    EXPECT_EQ(again.connection.unit, map.connection.unit);
+    EXPECT_EQ(again.connection.timeout, map.connection.timeout);
+    EXPECT_EQ(again.limits.request_gap, map.limits.request_gap);
+    EXPECT_EQ(again.fingerprint, map.fingerprint);
+  }
 }
 
 }  // namespace

@@ -61,22 +61,26 @@ TEST(Import, A_broken_file_is_a_map_that_loads_or_an_error_whatever_is_broken) {
       "table,name,address,type,scale,initial\nholding_registers,a b,1,INT,\"{gain: "
       "2}\",4\n\"coils\",c,5,,,on\n";
   const std::string json =
-      "{\"mode\": \"TCP\", \"slaves\": {\"1\": {\"isOnline\": true, \"registers\": {\"HR0\": 1, \"C5\": "
+      "{\"mode\": \"RTU\", \"port\": {\"name\": \"COM1\", \"stopBits\": 1}, \"slaves\": {\"1\": "
+      "{\"isOnline\": true, \"registers\": {\"HR0\": 1, \"C5\": "
       "true}}}}";
   const std::string xml =
-      "<modbuspal_project><slave id=\"1\"><coils><coil address=\"0\" "
+      "<modbuspal_project><links selected=\"Serial\"><serial com=\"COM1\" stops=\"1\"/></links><slave "
+      "id=\"1\"><coils><coil address=\"0\" "
       "name=\"x\"/></coils></slave></modbuspal_project>";
   const std::string yaml =
-      "modbus:\n - name: h\n   type: tcp\n   host: !secret x\n   sensors:\n    - {name: s, address: 3, "
-      "count: 1, "
-      "data_type: custom, structure: \">xB\"}\n   switches:\n   - {name: t, address: 3, verify: {address: "
+      "modbus:\n - name: h\n   type: serial\n   port: !secret x\n   parity: N\n   sensors:\n    - &s {name: "
+      "s, "
+      "address: 3, count: 1, slave: !secret u, "
+      "data_type: custom, structure: \">xB\"}\n    - {<<: *s, address: 4}\n   switches:\n   - {name: t, "
+      "slave: !secret u, address: 3, verify: {address: "
       "4}}\n";
   const std::string simulator =
       "{\"setup\": {\"co size\": 9, \"di size\": 9, \"ir size\": 9, \"hr size\": 9, \"shared blocks\": "
       "true}, "
       "\"write\": [3], \"uint16\": [3, [5, 7]], \"repeat\": [{\"addr\": [3, 4], \"to\": [1, 2]}]}";
   std::mt19937 random(1);  // NOLINT: the same every time
-  constexpr std::string_view bytes = "{}[]\"',;:<>&/\\\n\t 0a-#!";
+  constexpr std::string_view bytes = "{}[]\"',;:<>&*/\\\n\t 0a-#!";
   for (int round = 0; round < 3000; ++round) {
     for (const formats::Importer& importer : formats::importers()) {
       std::string text = importer.name == "csv"              ? good

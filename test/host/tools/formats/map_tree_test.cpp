@@ -87,6 +87,7 @@ TEST(MapWriter, A_text_that_looks_like_a_number_stays_a_text) {
   EXPECT_EQ(flow(scalar("k", "5", {}, true)), "\"5\"");
   EXPECT_EQ(flow(scalar("k", "5", {}, false)), "5");
   EXPECT_EQ(flow(scalar("k", "on", {}, true)), "\"on\"");
+  EXPECT_EQ(flow(scalar("k", "/dev/ttyUSB0", {}, true)), "/dev/ttyUSB0");
 }
 
 }  // namespace

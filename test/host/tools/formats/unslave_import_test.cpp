@@ -23,13 +23,14 @@ TEST(UnslaveImport, The_manuals_serial_slave_is_a_skeleton_of_a_map) {
   EXPECT_EQ(imported.text(),
             "name: given\n"
             "unit: 1\n"
+            "serial: {device: COM1, baud: 115200, parity: none, stop_bits: 1}\n"
             "mapping:\n"
             "  coils:\n"
             "    c_0: {address: 0, initial: on}\n"
             "  holding_registers:\n"
             "    hr_0: {address: 0, type: UINT, initial: 1}\n"
             "    hr_10: {address: 10, type: UINT, initial: 10}\n");
-  EXPECT_THAT(imported.said, HasSubstr("given:1:1: warning: the device is on a serial line"));
+  EXPECT_THAT(imported.said, HasSubstr("given:2:21: warning: 'COM1' is not a device file of Linux"));
   EXPECT_THAT(imported.said, HasSubstr("given:3:3: warning: Unslave has no types and no names"));
 }
 
