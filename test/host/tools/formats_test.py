@@ -81,7 +81,7 @@ class Import(Cli):
         self.assertEqual(done.returncode, 0, done.stderr)
         for line in ("Temp1: {address: 400001, type: INT, access: read, units: C, scale: {raw: [0, 1000], value: [0, 100]}}",
                      "Alarm: {address: 400020, type: BOOL, access: read, bit: 3}", "Door: {address: 100007, access: read}",
-                     "Name: {address: 400030, type: STRING, access: read_write, length: 20, ignore_byteorder: true}",
+                     "Name: {address: 400030, type: STRING, access: read_write, length: 20, order: AB}",
                      "Profile: {address: 400060, type: INT, access: read_write, count: 8}"):
             self.assertIn(line, done.stdout)
         name = self.file("addresses.csv", "name,address,type\na,400020.03,INT\nb,4x00021,INT\nc,%MW20,INT\nd,40001-40003,DINT\ne,,INT\n")

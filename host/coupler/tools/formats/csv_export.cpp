@@ -35,7 +35,7 @@ void add_format(const Point& point, Cells& cells) {
   if (format.type == codec::Type::STRING) {
     cells["length"] = fmt::to_string(format.length);
     if (format.encoding != codec::Encoding::utf8) cells["encoding"] = codec::to_string(format.encoding);
-    if (codec::ignores_byte_order(format)) cells["ignore_byteorder"] = "true";
+    if (codec::ignores_byte_order(format)) cells["order"] = "AB";
     return;
   }
   const unsigned width = codec::width(format.type);

@@ -84,8 +84,9 @@ void add_length(const RowView& row, RowPoint& point, const Cell& address,
                 std::optional<std::uint64_t> registers) {
   if (point.address.length) {
     say(row, point.entry, "length", *point.address.length, address);
-    if (point.address.high_byte_first && loader::child(point.entry, "ignore_byteorder") == nullptr)
-      point.entry.children.push_back(scalar("ignore_byteorder", "true", address.at));
+    if (point.address.high_byte_first && loader::child(point.entry, "order") == nullptr &&
+        loader::child(point.entry, "ignore_byteorder") == nullptr)
+      point.entry.children.push_back(scalar("order", "AB", address.at));
   }
   if (point.type.number) {
     say(row, point.entry, "length", length_of(row, point, *point.type.number, registers), *row.cell("type"));

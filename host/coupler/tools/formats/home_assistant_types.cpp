@@ -72,7 +72,7 @@ RegisterValue text_of(unsigned registers, unsigned bytes, bool swapped, loader::
   value.is_number = false;
   value.keys = {scalar("type", "STRING", at), scalar("length", fmt::to_string(bytes), at)};
   // On a map's default the first character is in the low byte, which is Home Assistant's `swap: byte`.
-  if (!swapped) value.keys.push_back(scalar("ignore_byteorder", "true", at));
+  if (!swapped) value.keys.push_back(scalar("order", "AB", at));
   return value;
 }
 

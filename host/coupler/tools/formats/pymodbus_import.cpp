@@ -135,7 +135,7 @@ Entry registers_of(const SimulatedValue& value, unsigned count, Entry point) {
   std::string text = value.value;
   if (value.type->registers == 0) {
     point.children.push_back(scalar("length", fmt::to_string(2 * value.registers), value.at));
-    point.children.push_back(scalar("ignore_byteorder", "true", value.at));
+    point.children.push_back(scalar("order", "AB", value.at));
     text.erase(text.find_last_not_of(' ') + 1);  // the simulator fills up with blanks
     if (!text.empty()) point.children.push_back(scalar("initial", text, value.at, true));
     return point;

@@ -31,7 +31,7 @@ TEST(CsvForeign, An_address_may_have_a_bit_a_length_a_count_or_its_last_register
   EXPECT_THAT(point_at("400020.15", ""), HasSubstr("a: {address: 400020, type: BOOL, bit: 15}"));
   EXPECT_THAT(point_at("40020:3", "bit"), HasSubstr("a: {address: 40020, type: BOOL, bit: 3}"));
   EXPECT_THAT(point_at("400030.20H", "String"),
-              HasSubstr("a: {address: 400030, type: STRING, length: 20, ignore_byteorder: true}"));
+              HasSubstr("a: {address: 400030, type: STRING, length: 20, order: AB}"));
   EXPECT_THAT(point_at("400030.20L", "String"), HasSubstr("a: {address: 400030, type: STRING, length: 20}"));
   EXPECT_THAT(point_at("400060 [8]", "Short Array"), HasSubstr("a: {address: 400060, type: INT, count: 8}"));
   EXPECT_THAT(point_at("400060[8]", "Word"), HasSubstr("a: {address: 400060, type: WORD, count: 8}"));

@@ -270,7 +270,7 @@ mapping:
     g: {address: 14, type: REAL}
     h: {address: 16, type: LREAL, order: ABCD}
     i: {address: 20, type: STRING, length: 8}
-    j: {address: 24, type: STRING, length: 6, ignore_byteorder: true}
+    j: {address: 24, type: STRING, length: 6, order: AB}
     k: {address: 30, type: SINT, offset: high}
     l: {address: 30, type: USINT, offset: low}
     m: {address: 31, type: BOOL, bit: 0}

@@ -27,7 +27,7 @@ TEST(HomeAssistantImport, A_data_type_and_its_swap_are_a_type_and_its_order) {
       {"input_type: input, data_type: uint64, swap: word_byte", "type: ULINT, order: DCBA}"},
       {"input_type: input, data_type: float32, swap: none", "type: REAL, order: ABCD}"},
       {"input_type: input, data_type: float64", "type: LREAL, order: ABCD}"},
-      {"input_type: input, data_type: string, count: 4", "type: STRING, length: 8, ignore_byteorder: true}"},
+      {"input_type: input, data_type: string, count: 4", "type: STRING, length: 8, order: AB}"},
       {"input_type: input, data_type: string, count: 4, swap: byte", "type: STRING, length: 8}"},
       {"input_type: input, data_type: int16, virtual_count: 3", "type: INT, count: 4}"},
   };
@@ -45,7 +45,7 @@ TEST(HomeAssistantImport, A_structure_is_a_point_for_each_of_its_values) {
       {"1, structure: \">bx\"", "s: {address: 3, type: SINT, offset: high}"},
       {"3, structure: \">3H\"", "s: {address: 3, type: UINT, count: 3}"},
       {"2, structure: \"<I\"", "s: {address: 3, type: UDINT, order: DCBA}"},
-      {"2, structure: \">4s\"", "s: {address: 3, type: STRING, length: 4, ignore_byteorder: true}"},
+      {"2, structure: \">4s\"", "s: {address: 3, type: STRING, length: 4, order: AB}"},
       {"5, structure: \">hxBxxf\"",
        "s_0: {address: 3, type: INT}\n    s_1: {address: 4, type: USINT, offset: low}\n"
        "    s_2: {address: 6, type: REAL, order: ABCD}"},

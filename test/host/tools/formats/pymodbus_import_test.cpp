@@ -37,7 +37,7 @@ TEST(PymodbusImport, In_shared_blocks_bits_are_bits_and_all_else_holding_registe
             "    uint32_12: {address: 12, type: UDINT, initial: 617001}\n"
             "    uint32_14: {address: 14, type: UDINT, count: 2, access: read}\n"
             "    float32_20: {address: 20, type: REAL, initial: 404.17, access: read}\n"
-            "    string_30: {address: 30, type: STRING, length: 6, ignore_byteorder: true, initial: pump, "
+            "    string_30: {address: 30, type: STRING, length: 6, order: AB, initial: pump, "
             "access: read}\n");
   EXPECT_THAT(imported.said,
               AllOf(HasSubstr("the simulator has no names"), HasSubstr("every table shows every register")));
