@@ -5,7 +5,7 @@ import time
 import unittest
 
 from coupler_driver.msg import Scheduled
-from coupler_driver.srv import Schedule, Write
+from coupler_driver.srv import CancelScheduled, ListScheduled, Schedule, Write
 from std_msgs.msg import Bool
 
 from support import process, testing
@@ -80,6 +80,27 @@ class ScheduleTest(testing.RosTest):
             told = [message.number for message in self.scheduled.values]
             self.assertLess(told.index(first), told.index(second))
 
+    def listed_and_cancelled(self, by):
+        listed = self.service(f"/{self.name}/list_scheduled", ListScheduled)
+        cancel = self.service(f"/{self.name}/cancel_scheduled", CancelScheduled)
+        speed = self.accepted(by, "speed", "40", NEVER)
+        lamp = self.accepted(by, "lamp", "true", NEVER / 2)
+        due = seconds(self.at)
+        writes = [write for write in listed().writes if write.point != "horn"]
+        self.assertEqual([(write.number, write.point, write.value) for write in writes],
+                         [(lamp, "lamp", "true"), (speed, "speed", "40")])
+        self.assertEqual((seconds(writes[0].due), {write.by_device for write in writes}), (due, {by == BY_NODE}))
+        answer = cancel(lamp)
+        self.assertEqual((answer.success, answer.message), (True, "cancelled"))
+        self.cancelled(lamp, "its client cancelled it")
+        self.assertEqual([write.number for write in listed().writes if write.point != "horn"], [speed])
+        again = cancel(lamp)
+        self.assertFalse(again.success)
+        self.assertIn(f"no write {lamp} waits", again.message)
+        self.assertTrue(self.write("lamp", "true").success)
+        self.assertTrue(cancel(speed).success)
+        self.assertEqual(list(listed().writes), [])
+
     def outcome(self, number):
         return self.scheduled.wait_for(lambda message: message.number == number)
 
@@ -120,6 +141,9 @@ class ByTheDriver(ScheduleTest):
 
     def test_the_same_time_is_in_the_order_of_the_calls(self):
         self.same_time_in_order(BY_DRIVER)
+
+    def test_those_that_wait_are_listed_and_one_is_cancelled(self):
+        self.listed_and_cancelled(BY_DRIVER)
 
     def test_the_due_time_is_told_as_it_was_asked_for(self):
         number = self.accepted(BY_DRIVER, "lamp", "true")
@@ -194,6 +218,10 @@ class ByTheNode(ScheduleTest):
         self.start(self.node.port, path, by)
         self.lamp = self.topic(f"/{self.name}/lamp", Bool)
         self.lamp.becomes(False)
+
+    def test_those_that_wait_are_listed_and_one_is_cancelled(self):
+        self.begin()
+        self.listed_and_cancelled(BY_NODE)
 
     def test_it_is_driven_and_told(self):
         self.begin()

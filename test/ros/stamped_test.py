@@ -4,7 +4,8 @@ it reads a value, and takes its time before and after."""
 import struct
 import time
 
-from coupler_driver.msg import BoolStamped, Float64Stamped, Int64Stamped, StringStamped, UInt64Stamped
+from coupler_driver.msg import (BoolSample, BoolStamped, Float64Sample, Float64Stamped, Int64Sample, Int64Stamped, StringSample,
+                                StringStamped, UInt64Sample, UInt64Stamped)
 from pymodbus.datastore import ModbusSequentialDataBlock
 from std_msgs.msg import Bool, UInt16
 
@@ -53,6 +54,10 @@ WANTED = {
     "ulint": (UInt64Stamped, 2**64 - 1), "small": (UInt64Stamped, 200), "real": (Float64Stamped, 1.5),
     "lreal": (Float64Stamped, -0.1), "level": (Float64Stamped, 10.5), "text": (StringStamped, "grüß"),
 }
+
+
+SAMPLES = {BoolStamped: BoolSample, Float64Stamped: Float64Sample, Int64Stamped: Int64Sample, StringStamped: StringSample,
+           UInt64Stamped: UInt64Sample}
 
 
 class Slow(ModbusSequentialDataBlock):
@@ -125,8 +130,25 @@ class Messages(StampedTest):
                 self.assertEqual(message.header.frame_id, "")
                 self.assertLess(abs(time.time() - seconds(message.header.stamp)), NO_TIMEOUT)
                 self.assertGreater(message.uncertainty, 0)
+                sample = self.topic(f"/{self.name}/{name}/sample", SAMPLES[kind]).wait_for(lambda _: True)
+                self.assertEqual((sample.value, sample.told), (value, False))
+                self.assertLessEqual(seconds(sample.since), seconds(sample.header.stamp))
         for name in ("horn", "row", "gate"):
+            self.assertIsNone(type_of(f"/{self.name}/{name}/sample"), name)
             self.assertIsNone(type_of(f"/{self.name}/{name}/stamped"), name)
+
+    def test_a_sample_says_since_when_its_value_is_known(self):
+        self.set(0, 1)
+        self.start("mapping: {input_registers: {count: {address: 0, type: UINT, stamped: true}}}\n")
+        topic = self.topic(f"/{self.name}/count/sample", UInt64Sample)
+        wait_until(lambda: len(topic.values) >= 3, "three samples")
+        first = topic.values[-1]
+        self.assertLess(seconds(first.since), seconds(first.header.stamp))
+        self.set(0, 2)
+        changed = topic.wait_for(lambda message: message.value == 2)
+        self.assertEqual(seconds(changed.since), seconds(changed.header.stamp))
+        later = topic.wait_for(lambda message: message.sequence == changed.sequence + 3)
+        self.assertAlmostEqual(seconds(later.since), seconds(changed.since), delta=later.uncertainty + ROUNDING)
 
     def test_what_one_request_read_has_one_stamp(self):
         self.start("defaults: {stamped: true, queue_size: 1000}\n"

@@ -36,6 +36,19 @@ const DraftPoint* stamped_by(std::string_view name, const FirstOfName& first) {
   return point != nullptr && point->point.host.stamped ? point : nullptr;
 }
 
+/// Topics that came after maps had such points, which keep them.
+void warn_of_missing_topic(std::string_view name, const FirstOfName& first, Position at,
+                           const Context& context) {
+  const DraftPoint* sampled = before("/sample", name, first);
+  const bool is_sample = sampled != nullptr && sampled->point.host.stamped;
+  if (name != points_topic && !is_sample) return;
+  context.problems.warning(
+      at,
+      fmt::format("{} is also a topic of the driver, with {}, and the point takes its place", shown(name),
+                  is_sample ? "the samples of a point" : "what the map says of each point"),
+      "give the point another name if programs need that topic");
+}
+
 /// ROS 2 takes no part of a name that begins with a digit, as in "a/1b"; ROS 1 does.
 bool is_ros2_name(std::string_view name) {
   for (std::size_t slash = name.find('/'); slash != std::string_view::npos; slash = name.find('/', slash + 1))
@@ -69,6 +82,7 @@ void check_topic(const DraftPoint& draft, const FirstOfName& first, const Contex
                            "give the point another name", {{stamped->name_at, "it is here"}});
   } else {
     warn_of_ros1_name(name, draft.name_at, context);
+    warn_of_missing_topic(name, first, draft.name_at, context);
   }
 }
 

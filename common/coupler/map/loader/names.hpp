@@ -13,6 +13,8 @@ bool is_relative_ros_name(std::string_view name);
 
 /// Topics of the driver itself, beside those of the points: no point may have such a name.
 constexpr std::string_view driver_topics[] = {"online", "scheduled", "status"};
+/// A later one, of which a point may have the name; then there is no such topic.
+constexpr std::string_view points_topic = "points";
 bool is_driver_topic(std::string_view name);
 
 /// The map's name is a namespace.

@@ -44,10 +44,10 @@ struct Purpose {
 /// A node that tells changes of its bits is asked for them all the time, by a request whose answer it holds
 /// back. Reads are made while one is outstanding only: its answer says which changes are older than they.
 ///
-/// push(), refuse(), report_held_back(), reset_watchdog(), make_safe(), schedule(), has_to_end(), answers(),
-/// end_comes(), statistics() and revision() may be called from any thread. All other functions are for the
-/// thread that owns the connection. Another thread may call send_now() if it has made sure that the owner
-/// is only waiting.
+/// push(), refuse(), report_held_back(), reset_watchdog(), make_safe(), schedule(), cancel_scheduled(),
+/// scheduled(), has_to_end(), answers(), end_comes(), statistics() and revision() may be called from any
+/// thread. All other functions are for the thread that owns the connection. Another thread may call
+/// send_now() if it has made sure that the owner is only waiting.
 class Device {
  public:
   /// `map`'s views, and everything given by reference, must outlive the device.
@@ -70,6 +70,8 @@ class Device {
   std::future<CallAnswer> make_safe() { return writer_.ask_safe(); }
   /// See OutputScheduler::ask().
   std::future<ScheduleAnswer> schedule(const ScheduledWrite& what) { return scheduler_.ask(what); }
+  std::future<CallAnswer> cancel_scheduled(std::uint32_t number) { return scheduler_.cancel(number); }
+  std::vector<WaitingWrite> scheduled() const { return scheduler_.waiting(); }
   /// Returns whether stop() has to send requests because of scheduled outputs.
   bool has_to_end() const { return scheduler_.is_busy(); }
   /// Returns whether the device answered the last request, so that its outputs may have been written and can

@@ -89,6 +89,12 @@ std::future<ScheduleAnswer> DeviceThread::schedule(const ScheduledWrite& what) {
   return answer;
 }
 
+std::future<CallAnswer> DeviceThread::cancel_scheduled(std::uint32_t number) {
+  auto answer = device_.cancel_scheduled(number);
+  link_.wake();
+  return answer;
+}
+
 /// An exception, for lack of memory for what the device sends, for example, costs this device its connection,
 /// and no other.
 template <class Work>

@@ -91,6 +91,11 @@ class DeviceThread {
   /// The answer comes a timeout after the end of the writes and requests before it, at the latest, or at once
   /// if there is no connection. The outcome goes to the sink.
   std::future<ScheduleAnswer> schedule(const ScheduledWrite& what);
+  /// Cancels a write that schedule() has accepted and that has not begun. The answer comes as that of
+  /// schedule() does.
+  std::future<CallAnswer> cancel_scheduled(std::uint32_t number);
+  /// Returns the writes that schedule() has accepted and that have no outcome yet.
+  std::vector<WaitingWrite> scheduled() const { return device_.scheduled(); }
   DeviceSnapshot statistics() const { return device_.statistics(); }
   std::uint64_t revision() const { return device_.revision(); }
 

@@ -52,6 +52,12 @@ void NodeOutputs::add(std::uint16_t number, modbus::NodeTime node_due, const Acc
   waiting_.push_back({number, node_due, what, due + told_within + (due - clock_.now()) / drift_part});
 }
 
+std::optional<std::uint16_t> NodeOutputs::number_at_node(std::uint32_t number) const {
+  for (const Waiting& one : waiting_)
+    if (one.what.number == number) return one.number;
+  return std::nullopt;
+}
+
 std::vector<std::uint16_t> NodeOutputs::numbers() const {
   std::vector<std::uint16_t> numbers;
   numbers.reserve(waiting_.size());

@@ -30,6 +30,8 @@ class NodeOutputs : public ChangeSink {
   /// `number`: see ScheduleReply. `node_due`: see ScheduleOutput.
   void add(std::uint16_t number, modbus::NodeTime node_due, const AcceptedWrite& what);
   std::size_t size() const { return waiting_.size(); }
+  /// The node's number of the write with that number of ours; nullopt if it does not wait.
+  std::optional<std::uint16_t> number_at_node(std::uint32_t number) const;
   /// The numbers of those that wait.
   std::vector<std::uint16_t> numbers() const;
   /// Reports the outcome of an output if it still waits.

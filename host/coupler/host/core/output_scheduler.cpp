@@ -53,9 +53,32 @@ OutputScheduler::OutputScheduler(const Map& map, Link& link, Writer& writer, Cha
 void OutputScheduler::connected(bool by_node) {
   node_can_ = by_node;
   calls_.open();
+  cancels_.open();
+}
+
+std::vector<WaitingWrite> OutputScheduler::waiting() const {
+  std::unique_lock lock(mutex_);
+  std::vector<WaitingWrite> waiting = waiting_;
+  lock.unlock();
+  std::stable_sort(waiting.begin(), waiting.end(), [](const WaitingWrite& a, const WaitingWrite& b) {
+    return a.which.what.due < b.which.what.due;
+  });
+  return waiting;
+}
+
+/// Returns the number of the write.
+std::uint32_t OutputScheduler::accept(const ScheduledWrite& what, bool by_device) {
+  const std::lock_guard lock(mutex_);
+  waiting_.push_back({{++last_number_, what}, by_device});
+  return last_number_;
 }
 
 Result<> OutputScheduler::step(const ChangeListener& listener) {
+  if (auto call = cancels_.take_one_of([](std::uint32_t) { return true; })) {
+    Result<> done = answer_cancel(call->what, call->answer, listener);
+    note();
+    return done;
+  }
   auto call = calls_.take_one_of([this](const AskedSchedule& asked) { return is_next(asked); });
   Result<> done = call ? answer(call->what.what, call->answer, listener) : Result<>{};
   note();
@@ -120,10 +143,11 @@ Result<std::optional<ScheduleAnswer>> OutputScheduler::give_to_node(const Schedu
   const modbus::NodeTime due = by_node_.node_due(what.due, listener.mapping()).value_or(modbus::NodeTime{});
   const auto reply = link_.schedule(request(what, due, listener));
   if (reply) {
-    by_node_.add(reply->number, due, {++last_number_, what});
+    const std::uint32_t number = accept(what, true);
+    by_node_.add(reply->number, due, {number, what});
     // The answer to the wait has come before that to this request, and was the last one.
     if (!listener.is_active()) by_node_.lose(told_no_more);
-    return std::optional(ScheduleAnswer{last_number_, "accepted: the node does it"});
+    return std::optional(ScheduleAnswer{number, "accepted: the node does it"});
   }
   const ExceptionReply* exception = exception_in(reply.error());
   if (exception == nullptr || is_unit_away(reply.error())) return tl::make_unexpected(reply.error());
@@ -135,16 +159,46 @@ Result<std::optional<ScheduleAnswer>> OutputScheduler::give_to_node(const Schedu
 
 ScheduleAnswer OutputScheduler::keep(const ScheduledWrite& what) {
   if (what.duration.count() > 0)
-    return {0,
-            fmt::format("nothing but the driver could end it, and that may die before; only a node ends by "
-                        "itself what lasts, and no part of a register. Schedule a second write of {}",
-                        point(what).name)};
-  by_driver_.add({++last_number_, what});
-  return {last_number_, "accepted: the driver does it"};
+    return {0, fmt::format(
+                   "how_long needs a node, which ends an output by itself, and a whole register or bit of "
+                   "its tables. Send how_long 0. Schedule a second write of {} to end it",
+                   point(what).name)};
+  const std::uint32_t number = accept(what, false);
+  by_driver_.add({number, what});
+  return {number, "accepted: the driver does it"};
+}
+
+Result<> OutputScheduler::answer_cancel(std::uint32_t number, std::promise<CallAnswer>& to,
+                                        const ChangeListener& listener) {
+  const std::string reason = to_string(modbus::Reason::client);
+  if (by_driver_.cancel(number, reason)) {
+    to.set_value({true, "cancelled"});
+    return {};
+  }
+  const auto at_node = by_node_.number_at_node(number);
+  if (!at_node) {
+    to.set_value({false, fmt::format("no write {} waits: it was carried out, or there was none; "
+                                     "list_scheduled names those that wait",
+                                     number)});
+    return {};
+  }
+  const Result<> cancelled = cancel_at_node(*at_node, reason, listener);
+  if (cancelled) {
+    to.set_value({true, "cancelled"});
+    return {};
+  }
+  if (exception_in(cancelled.error()) == nullptr) {
+    to.set_value({false, "it may be carried out or not: " + to_string(cancelled.error())});
+    return cancelled;
+  }
+  to.set_value({false, "too late: it has begun"});
+  return {};
 }
 
 void OutputScheduler::disconnected(const std::string& why) {
-  calls_.close(fmt::format("not connected: {}; ask again when the device is back", why));
+  const std::string closed = fmt::format("not connected: {}; ask again when the device is back", why);
+  calls_.close(closed);
+  cancels_.close(closed);
   if (!busy_) return;
   by_driver_.cancel(to_string(modbus::Reason::connection));
   by_node_.lose("the connection ended before the outcome was heard");
@@ -153,24 +207,33 @@ void OutputScheduler::disconnected(const std::string& why) {
 
 void OutputScheduler::shut_down(bool connected, const ChangeListener& listener) {
   calls_.close(the_driver_ends);
+  cancels_.close(the_driver_ends);
   if (!busy_) return;
   by_driver_.cancel(the_driver_ends);
-  if (connected) cancel_at_node(listener);
+  for (const std::uint16_t number : connected ? by_node_.numbers() : std::vector<std::uint16_t>{}) {
+    const Result<> done = cancel_at_node(number, the_driver_ends, listener);
+    if (!done && exception_in(done.error()) == nullptr) break;
+  }
   by_node_.lose(the_driver_ends);
 }
 
-void OutputScheduler::cancel_at_node(const ChangeListener& listener) {
-  for (const std::uint16_t number : by_node_.numbers()) {
-    const auto reply =
-        link_.schedule(modbus::ScheduleRequest::cancel({listener.epoch().value_or(0), number}));
-    if (reply) by_node_.settle(number, ScheduledOutcome::Result::cancelled, the_driver_ends);
-    if (!reply && exception_in(reply.error()) == nullptr) return;
-  }
+Result<> OutputScheduler::cancel_at_node(std::uint16_t number, const std::string& reason,
+                                         const ChangeListener& listener) {
+  const auto reply = link_.schedule(modbus::ScheduleRequest::cancel({listener.epoch().value_or(0), number}));
+  if (!reply) return tl::make_unexpected(reply.error());
+  by_node_.settle(number, ScheduledOutcome::Result::cancelled, reason);
+  return {};
 }
 
 void OutputScheduler::on_outcome(const AcceptedWrite& which, ScheduledOutcome::Result result, Stamp at,
                                  const std::string& reason) {
   const ScheduledWrite& what = which.what;
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(),
+                                  [&](const WaitingWrite& one) { return one.which.number == which.number; }),
+                   waiting_.end());
+  }
   // An output that the node drove for good counts as a write. Its outcome may come late, after a newer write.
   if (result == ScheduledOutcome::Result::done && what.duration.count() == 0 && !which.is_overwritten)
     writer_.remember(what.write);

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <future>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,8 @@ using ScheduleCalls = CallQueue<AskedSchedule, ScheduleAnswer>;
 /// Scheduled writes. A node with a timer carries them out and tells their outcome; otherwise the driver
 /// writes them.
 ///
-/// Any thread may call ask() and is_busy(). Only the thread that uses the link may call the other
-/// functions.
+/// Any thread may call ask(), cancel(), waiting() and is_busy(). Only the thread that uses the link may call
+/// the other functions.
 class OutputScheduler : private ScheduledListener, private WrittenListener {
  public:
   /// `bits` receives the changes of bits. All references must outlive the object.
@@ -40,6 +41,10 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
   std::future<ScheduleAnswer> ask(const ScheduledWrite& what) {
     return calls_.ask({what, writer_.queued(what.write.point)});
   }
+  /// Cancels a write that was accepted and has not begun. Its outcome goes to the sink.
+  std::future<CallAnswer> cancel(std::uint32_t number) { return cancels_.ask(number); }
+  /// Returns those that were accepted and have no outcome yet, in the order in which they are due.
+  std::vector<WaitingWrite> waiting() const;
   /// Returns whether shut_down() has something to do.
   bool is_busy() const { return busy_; }
 
@@ -51,7 +56,8 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
   /// The time at which queue_due() or step() has something to do. It is in the past if that is now, or as
   /// soon as the writer has made the writes before.
   Time due(const ChangeListener& listener) const {
-    return calls_.any() && is_ready(listener) ? Time::min() : by_driver_.due();
+    const bool is_asked = cancels_.any() || (calls_.any() && is_ready(listener));
+    return is_asked ? Time::min() : by_driver_.due();
   }
   /// Queues the writes whose time has come.
   void queue_due(Time now) {
@@ -60,6 +66,7 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
     note();
   }
   bool has_request(const ChangeListener& listener) {
+    if (cancels_.any()) return true;
     return is_ready(listener) && calls_.any_of([this](const AskedSchedule& asked) { return is_next(asked); });
   }
   /// Sends one request. An error means that the connection can no longer be used.
@@ -91,7 +98,9 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
   Result<std::optional<ScheduleAnswer>> give_to_node(const ScheduledWrite& what,
                                                      const ChangeListener& listener);
   ScheduleAnswer keep(const ScheduledWrite& what);
-  void cancel_at_node(const ChangeListener& listener);
+  Result<> answer_cancel(std::uint32_t number, std::promise<CallAnswer>& to, const ChangeListener& listener);
+  Result<> cancel_at_node(std::uint16_t number, const std::string& reason, const ChangeListener& listener);
+  std::uint32_t accept(const ScheduledWrite& what, bool by_device);
   modbus::ScheduleRequest request(const ScheduledWrite& what, modbus::NodeTime due,
                                   const ChangeListener& listener) const;
   const Point& point(const ScheduledWrite& what) const { return map_.points[what.write.point]; }
@@ -103,11 +112,14 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
   Writer& writer_;
   Sink& sink_;
   ScheduleCalls calls_;
+  CallQueue<std::uint32_t, CallAnswer> cancels_;  ///< by number
   ScheduledWrites by_driver_;
   NodeOutputs by_node_;
   bool node_can_ = false;  ///< the device carries out scheduled outputs
   std::uint32_t last_number_ = 0;
   std::atomic<bool> busy_{false};  ///< a write was accepted and has no outcome yet
+  mutable std::mutex mutex_;
+  std::vector<WaitingWrite> waiting_;  ///< guarded by mutex_
 };
 
 }  // namespace coupler::host

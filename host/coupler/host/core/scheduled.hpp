@@ -60,6 +60,12 @@ struct AcceptedWrite {
   bool is_overwritten = false;
 };
 
+/// An accepted write without an outcome.
+struct WaitingWrite {
+  AcceptedWrite which;
+  bool by_device = false;  ///< a timer of the device does it, not the driver's
+};
+
 /// Receives the outcomes. The connection's thread makes the calls.
 class ScheduledListener {
  public:

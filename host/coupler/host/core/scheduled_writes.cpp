@@ -111,4 +111,10 @@ void ScheduledWrites::cancel(const std::string& reason) {
   cancel_if([](const Entry&) { return true; }, {clock_.now(), {}}, reason);
 }
 
+bool ScheduledWrites::cancel(std::uint32_t number, const std::string& reason) {
+  const std::size_t before = entries_.size();
+  cancel_if([number](const Entry& entry) { return entry.what.number == number; }, {clock_.now(), {}}, reason);
+  return entries_.size() < before;
+}
+
 }  // namespace coupler::host

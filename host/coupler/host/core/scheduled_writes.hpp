@@ -39,6 +39,8 @@ class ScheduledWrites {
 
   /// Cancels those that wait.
   void cancel(const std::string& reason);
+  /// Cancels the one with that number. Returns false if it does not wait.
+  bool cancel(std::uint32_t number, const std::string& reason);
 
  private:
   struct Entry final : WriteListener {

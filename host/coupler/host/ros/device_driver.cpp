@@ -39,6 +39,22 @@ std::vector<std::unique_ptr<PointPublisher>> advertise_stamped(Node& node, const
   return result;
 }
 
+std::vector<std::unique_ptr<PointPublisher>> advertise_samples(Node& node, const Map& map,
+                                                               SubscriberCounts& subscribers,
+                                                               const WallTime& wall) {
+  std::vector<std::unique_ptr<PointPublisher>> result(map.points.size());
+  for (std::uint32_t i = 0; i < map.points.size() && !Shutdown::requested; ++i)
+    if (const std::string name = fmt::format("{}/sample", map.points[i].name);
+        map.points[i].host.stamped && find(map, name) == nullptr)
+      result[i] = node.advertise_sample(topic(map, name), map.points[i], i, subscribers, wall);
+  return result;
+}
+
+/// A point of that name has the topic.
+std::shared_ptr<void> publish_points(Node& node, const Map& map) {
+  return find(map, "points") == nullptr ? node.publish_points(topic(map, "points"), map) : nullptr;
+}
+
 Node::PublishScheduled advertise_scheduled(Node& node, const Map& map, const WallTime& wall) {
   return can_schedule(map) ? node.advertise_scheduled(topic(map, "scheduled"), map, wall)
                            : Node::PublishScheduled();
@@ -68,6 +84,8 @@ DeviceDriver::DeviceDriver(Node& node, const Map& map, std::unique_ptr<Link> lin
       subscribers_(map.points.size()),
       publishers_(advertise_all(node, map_, subscribers_)),
       stamped_(advertise_stamped(node, map_, subscribers_, wall_)),
+      samples_(advertise_samples(node, map_, subscribers_, wall_)),
+      points_(publish_points(node, map_)),
       publish_online_(advertise_online(node, map)),
       publish_status_(node.advertise_status(topic(map, "status"), map)),
       publish_scheduled_(advertise_scheduled(node, map_, wall_)),
@@ -91,7 +109,8 @@ void DeviceDriver::begin(const Followed& followed) {
   services_.start(
       node_, {writes_, [this] { return driven().reset_watchdog(); }, [this] { return driven().make_safe(); },
               [this](const ScheduledWrite& what) { return driven().schedule(what); },
-              [this] { return thread_.statistics(); }});
+              [this](std::uint32_t number) { return thread_.cancel_scheduled(number); },
+              [this] { return thread_.scheduled(); }, [this] { return thread_.statistics(); }});
   if (map_.poll == Poll::subscribed)
     subscribers_.follow([this](std::uint32_t point, bool wanted) { thread_.want(point, wanted); });
   subscribers_.on_each([this](std::uint32_t point) { thread_.want(point, true); });
@@ -144,15 +163,26 @@ bool DeviceDriver::report(Time now, bool force) {
 }
 
 void DeviceDriver::on_values(Span<const std::uint32_t> points) {
+  publish(points, false);
+  for (const auto& follower : followers_) follower->sink().on_values(points);
+}
+
+void DeviceDriver::on_told(std::uint32_t point) {
+  publish({&point, 1}, true);
+  for (const auto& follower : followers_) follower->sink().on_told(point);
+}
+
+void DeviceDriver::publish(Span<const std::uint32_t> points, bool is_told) {
   bool is_measured = false;  // once, so that the stamps of one read are equal
   for (const std::uint32_t point : points) {
-    publishers_[point]->publish(values_.registers(point), values_.stamp(point));
-    if (map_.points[point].format.type == codec::Type::STRING && values_.differs(point)) check_text(point);
-    if (!stamped_[point]) continue;
+    const Sample sample{values_.stamp(point), is_told, values_.differs(point)};
+    publishers_[point]->publish(values_.registers(point), sample);
+    if (sample.is_new && map_.points[point].format.type == codec::Type::STRING) check_text(point);
+    if (!map_.points[point].host.stamped) continue;
     if (!std::exchange(is_measured, true)) measure_wall();
-    stamped_[point]->publish(values_.registers(point), values_.stamp(point));
+    for (const auto* publishers : {&stamped_, &samples_})
+      if (const auto& publisher = (*publishers)[point]) publisher->publish(values_.registers(point), sample);
   }
-  for (const auto& follower : followers_) follower->sink().on_values(points);
 }
 
 void DeviceDriver::on_no_values(Span<const std::uint32_t> points, Time at) {
@@ -176,7 +206,7 @@ void DeviceDriver::check_text(std::uint32_t point) {
 }
 
 void DeviceDriver::renew(std::uint32_t point) {
-  for (const auto* publishers : {&publishers_, &stamped_})
+  for (const auto* publishers : {&publishers_, &stamped_, &samples_})
     if (const auto& publisher = (*publishers)[point]) publisher->renew();
 }
 
@@ -193,7 +223,7 @@ void DeviceDriver::measure_wall() {
 
 Time DeviceDriver::repeat_at(std::uint32_t point) const {
   Time first = Time::max();
-  for (const auto* publishers : {&publishers_, &stamped_})
+  for (const auto* publishers : {&publishers_, &stamped_, &samples_})
     if (const auto& publisher = (*publishers)[point]) first = std::min(first, publisher->repeat_at());
   return first;
 }

@@ -20,8 +20,9 @@
 
 namespace coupler::host {
 
-/// One device in ROS: `<name>/<point>` for each readable point, with `<name>/<point>/stamped` where the map
-/// says so, `<name>/<point>/write` for each writable one, the latched `<name>/online` and `<name>/status`,
+/// One device in ROS: `<name>/<point>` for each readable point, with `<name>/<point>/stamped` and
+/// `<name>/<point>/sample` where the map says so, `<name>/points`, `<name>/<point>/write` for each writable
+/// one, the latched `<name>/online` and `<name>/status`,
 /// `<name>/scheduled`, services, diagnostics, and the thread that drives the device. Values are published in
 /// that thread as they are decoded.
 class DeviceDriver : public Sink {
@@ -56,6 +57,7 @@ class DeviceDriver : public Sink {
   bool report(Time now, bool force);
 
   void on_values(Span<const std::uint32_t> points) override;
+  void on_told(std::uint32_t point) override;
   void on_no_values(Span<const std::uint32_t> points, Time at) override;
   Time repeat_at(std::uint32_t point) const override;
   void on_identified(Identity::Verdict verdict) override;
@@ -68,6 +70,7 @@ class DeviceDriver : public Sink {
   void log(Level level, const std::string& text);
   DeviceThread& driven();
   void start_followers(const Followed& followed);
+  void publish(Span<const std::uint32_t> points, bool is_told);
   void renew(std::uint32_t point);
   void check_text(std::uint32_t point);
   void measure_wall();
@@ -81,6 +84,8 @@ class DeviceDriver : public Sink {
   WallTime wall_;
   LogLineLimit wall_lines_;
   std::vector<std::unique_ptr<PointPublisher>> stamped_;  ///< by point; null where it is not stamped
+  std::vector<std::unique_ptr<PointPublisher>> samples_;  ///< the same
+  std::shared_ptr<void> points_;                          ///< the topic; null where a point has its name
   std::function<void(bool)> publish_online_;
   Node::PublishStatus publish_status_;
   Node::PublishScheduled publish_scheduled_;  ///< empty if no point can be written

@@ -2,6 +2,7 @@
 #include "coupler/host/ros/device_services.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <utility>
 
@@ -21,6 +22,14 @@ namespace {
 using Outcome = WriteResult::Outcome;
 
 bool is_bit(const Point& point) { return point.format.type == codec::Type::BOOL && point.count == 1; }
+
+/// The value as the service `write` takes it.
+std::string value_text(const Write& write, const Point& point) {
+  if (!holds_bits(point.table)) return format_value(write.registers.data(), point);
+  std::array<std::uint16_t, modbus::max_write_bits> bits{};
+  for (std::size_t i = 0; i < point.count; ++i) bits[i] = write.bit(i) ? 1 : 0;
+  return format_value(bits.data(), point);
+}
 
 /// A point that is read has a new value within this time.
 Duration answer_timeout(const Map& map, const Point& point) {
@@ -53,6 +62,9 @@ void DeviceServices::start(Node& node, Device device) {
     timed_calls_->offer_schedule(name("schedule"), [this](const ServiceThread::ScheduleRequest& request) {
       return answer_schedule(request);
     });
+    timed_calls_->offer_cancel(name("cancel_scheduled"),
+                               [this](std::uint32_t number) { return answer_cancel(number); });
+    timed_calls_->offer_list(name("list_scheduled"), [this] { return answer_list(); });
     timed_calls_->start();
   }
   for (std::uint32_t i = 0; i < map_.points.size() && !Shutdown::requested; ++i)
@@ -119,6 +131,31 @@ ScheduleAnswer DeviceServices::answer_schedule(const ServiceThread::ScheduleRequ
     if (device_) asked = device_->schedule(what);
   }
   return asked.valid() ? asked.get() : ScheduleAnswer{0, "the driver ends"};
+}
+
+CallAnswer DeviceServices::answer_cancel(std::uint32_t number) {
+  std::future<CallAnswer> asked;
+  {
+    const std::lock_guard lock(mutex_);
+    if (device_) asked = device_->cancel(number);
+  }
+  return asked.valid() ? asked.get() : CallAnswer{false, "the driver ends"};
+}
+
+std::vector<ServiceThread::ListedWrite> DeviceServices::answer_list() {
+  std::vector<WaitingWrite> waiting;
+  {
+    const std::lock_guard lock(mutex_);
+    if (device_) waiting = device_->scheduled();
+  }
+  std::vector<ServiceThread::ListedWrite> listed;
+  listed.reserve(waiting.size());
+  for (const auto& [which, by_device] : waiting) {
+    const Point& point = map_.points[which.what.write.point];
+    listed.push_back({which.number, std::string(point.name), value_text(which.what.write, point),
+                      which.what.asked, which.what.duration, by_device});
+  }
+  return listed;
 }
 
 CallAnswer DeviceServices::answer_set(std::uint32_t index, bool on) {

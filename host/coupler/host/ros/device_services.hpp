@@ -18,10 +18,11 @@ namespace coupler::host {
 bool can_schedule(const Map& map);
 
 /// The services of a device: `<name>/write`, `<name>/read`, `<name>/<point>/set` for each writable bit,
-/// `<name>/reset_watchdog` if the driver uses the coupler's own watchdog, `<name>/schedule` if a point can be
-/// written, and `<name>/safe`. They answer when the result is known, in a thread of their own. `safe`,
-/// `schedule` and `read`, which may wait for long, have a thread each: none of them waits for the others, nor
-/// they for it.
+/// `<name>/reset_watchdog` if the driver uses the coupler's own watchdog, `<name>/schedule`,
+/// `<name>/cancel_scheduled` and
+/// `<name>/list_scheduled` if a point can be written, and `<name>/safe`. They answer when the result is
+/// known, in a thread of their own. `safe`, `schedule` and `read`, which may wait for long, have a thread
+/// each: none of them waits for the others, nor they for it.
 class DeviceServices {
  public:
   /// The storage of `map`, the table and the counts must outlive it.
@@ -38,6 +39,8 @@ class DeviceServices {
     std::function<std::future<CallAnswer>()> reset;      ///< of the coupler's own watchdog
     std::function<std::future<CallAnswer>()> make_safe;  ///< all outputs
     std::function<std::future<ScheduleAnswer>(const ScheduledWrite&)> schedule;
+    std::function<std::future<CallAnswer>(std::uint32_t number)> cancel;  ///< a scheduled write
+    std::function<std::vector<WaitingWrite>()> scheduled;
     std::function<DeviceSnapshot()> statistics;
   };
 
@@ -51,6 +54,8 @@ class DeviceServices {
   WriteTicket::Outcome refuse(const std::string& name, const std::string& why);
   WriteTicket::Outcome answer_write(const std::string& name, const std::string& text);
   ScheduleAnswer answer_schedule(const ServiceThread::ScheduleRequest& request);
+  CallAnswer answer_cancel(std::uint32_t number);
+  std::vector<ServiceThread::ListedWrite> answer_list();
   ServiceThread::ReadAnswer answer_read(const std::string& name);
   CallAnswer answer_set(std::uint32_t index, bool on);
   CallAnswer answer_call(std::function<std::future<CallAnswer>()> Device::*call);

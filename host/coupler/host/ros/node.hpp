@@ -20,6 +20,7 @@
 #include "coupler/host/core/sink.hpp"
 #include "coupler/host/core/wall_time.hpp"
 #include "coupler/host/core/write.hpp"
+#include "coupler/host/ros/sample.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::host {
@@ -28,9 +29,9 @@ namespace coupler::host {
 class PointPublisher {
  public:
   virtual ~PointPublisher() = default;
-  /// The point's registers as they were at `stamp`; bit tables: each bit as one register, 0 or 1. Publishes
+  /// The point's registers as they were at the stamp; bit tables: each bit as one register, 0 or 1. Publishes
   /// them if the point's policy says so.
-  virtual void publish(const std::uint16_t* registers, Stamp stamp) = 0;
+  virtual void publish(const std::uint16_t* registers, const Sample& sample) = 0;
   /// When publish() would publish the value of last time once more; Time::max(): never. From its thread.
   virtual Time repeat_at() const = 0;
   /// The next value is published whatever it is.
@@ -99,6 +100,15 @@ class ServiceThread {
     std::string value;
     std::string message;
   };
+  /// A write that waits for its time.
+  struct ListedWrite {
+    std::uint32_t number = 0;
+    std::string point;
+    std::string value;
+    std::chrono::nanoseconds due{};  ///< wall time
+    std::chrono::nanoseconds how_long{};
+    bool by_device = false;
+  };
   struct ScheduleRequest {
     std::string point;
     std::string value;
@@ -118,6 +128,11 @@ class ServiceThread {
   /// coupler_driver/Schedule.
   virtual void offer_schedule(const std::string& name,
                               std::function<ScheduleAnswer(const ScheduleRequest&)> call) = 0;
+  /// coupler_driver/CancelScheduled: the number of a write.
+  virtual void offer_cancel(const std::string& name,
+                            std::function<CallAnswer(std::uint32_t number)> call) = 0;
+  /// coupler_driver/ListScheduled.
+  virtual void offer_list(const std::string& name, std::function<std::vector<ListedWrite>()> call) = 0;
   /// coupler_driver/Read: a point's name.
   virtual void offer_read(const std::string& name,
                           std::function<ReadAnswer(const std::string& point)> call) = 0;
@@ -155,6 +170,12 @@ class Node {
                                                             std::uint32_t index,
                                                             SubscriberCounts& subscribers,
                                                             const WallTime& wall) = 0;
+  /// The same with how the values are known: coupler_driver/BoolSample and its relatives.
+  virtual std::unique_ptr<PointPublisher> advertise_sample(const std::string& topic, const Point& point,
+                                                           std::uint32_t index, SubscriberCounts& subscribers,
+                                                           const WallTime& wall) = 0;
+  /// Publishes a coupler_driver/Points, latched. The topic lasts as long as the result.
+  virtual std::shared_ptr<void> publish_points(const std::string& topic, const Map& map) = 0;
   /// To `map.points[index]`. The handler is called in ROS's network thread and must not wait for anything.
   /// The subscription lasts as long as the result; map and handler must outlive it.
   virtual std::shared_ptr<void> subscribe(const std::string& topic, const Map& map, std::uint32_t index,

@@ -20,8 +20,10 @@ namespace coupler::host {
 
 /// Used for a message that has no stamp.
 struct NoStamp {
+  void see(const Sample&) const {}
+  void forget() const {}
   template <class Message>
-  void operator()(Message&, Stamp) const {}
+  void operator()(Message&, const Sample&) const {}
 };
 
 /// The part of a point's publisher that does not depend on its message.
@@ -48,7 +50,8 @@ class CountingPublisher : public PointPublisher {
   SubscriberCounts& subscribers_;
 };
 
-/// Publishes a point as a kind of message (message.hpp), or with Stamper (stamped_message.hpp).
+/// Publishes a point as a kind of message (message.hpp), or with Stamper or SampleStamper
+/// (stamped_message.hpp).
 template <class Kind, class Publisher, class PutStamp = NoStamp>
 class TypedPublisher : public CountingPublisher {
  public:
@@ -61,11 +64,16 @@ class TypedPublisher : public CountingPublisher {
   /// Before anything is published. The publisher may call add_subscriber() and remove_subscriber() already.
   void set_publisher(Publisher publisher) { publisher_ = std::move(publisher); }
 
-  void publish(const std::uint16_t* registers, Stamp stamp) override {
-    if (!policy_.calls_news(registers, stamp.at)) return;
+  void publish(const std::uint16_t* registers, const Sample& sample) override {
+    put_stamp_.see(sample);
+    if (!policy_.calls_news(registers, sample.stamp.at)) return;
     Kind::decode(registers, point_, message_);
-    put_stamp_(message_, stamp);
+    put_stamp_(message_, sample);
     publisher_.publish(message_);
+  }
+  void renew() override {
+    CountingPublisher::renew();
+    put_stamp_.forget();
   }
 
  private:
@@ -128,6 +136,17 @@ void fill(Response& response, const ScheduleAnswer& answer) {
 template <class Request>
 ServiceThread::ScheduleRequest schedule_request(const Request& request) {
   return {request.point, request.value, message_time(request.at), message_time(request.how_long)};
+}
+
+/// Fills a coupler_driver/ScheduledWrite.
+template <class Message>
+void fill(Message& message, const ServiceThread::ListedWrite& write) {
+  message.number = write.number;
+  message.point = write.point;
+  message.value = write.value;
+  put_time(message.due, write.due);
+  put_time(message.how_long, write.how_long);
+  message.by_device = write.by_device;
 }
 
 /// Fills a coupler_driver/Scheduled, but for the point.
@@ -219,6 +238,17 @@ class TypedServiceThread : public ServiceThread {
                       std::function<ScheduleAnswer(const ServiceThread::ScheduleRequest&)> call) override {
     serve<typename Types::Schedule>(name, [call = std::move(call)](const auto& request, auto& response) {
       fill(response, call(schedule_request(request)));
+    });
+  }
+  void offer_cancel(const std::string& name, std::function<CallAnswer(std::uint32_t)> call) override {
+    serve<typename Types::CancelScheduled>(name,
+                                           [call = std::move(call)](const auto& request, auto& response) {
+                                             fill(response, call(request.number));
+                                           });
+  }
+  void offer_list(const std::string& name, std::function<std::vector<ListedWrite>()> call) override {
+    serve<typename Types::ListScheduled>(name, [call = std::move(call)](const auto&, auto& response) {
+      for (const ListedWrite& write : call()) fill(response.writes.emplace_back(), write);
     });
   }
   void offer_read(const std::string& name, std::function<ReadAnswer(const std::string&)> call) override {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 
 #include "coupler/codec/number.hpp"
 #include "coupler/codec/scale.hpp"
@@ -13,6 +14,7 @@
 #include "coupler/host/core/stamp.hpp"
 #include "coupler/host/core/wall_time.hpp"
 #include "coupler/host/ros/message_time.hpp"
+#include "coupler/host/ros/sample.hpp"
 #include "coupler/map/point.hpp"
 #include "coupler/map/published.hpp"
 
@@ -80,6 +82,16 @@ auto with_stamped_message(const Point& point, F&& f) {
   });
 }
 
+/// The messages of samples in the place of the stamped ones, for with_stamped_message().
+template <class M>
+struct SampleMessages {
+  using BoolStamped = typename M::BoolSample;
+  using Float64Stamped = typename M::Float64Sample;
+  using Int64Stamped = typename M::Int64Sample;
+  using StringStamped = typename M::StringSample;
+  using UInt64Stamped = typename M::UInt64Sample;
+};
+
 /// Fills what such a message says beside its value. The stamp does not go back, unless somebody has set the
 /// clock back: a better measurement of it may find an earlier time, and what that adds to the error is said.
 class Stamper {
@@ -87,8 +99,12 @@ class Stamper {
   /// `wall` must outlive it.
   explicit Stamper(const WallTime& wall) : wall_(wall) {}
 
+  void see(const Sample&) {}
+  void forget() {}
+
   template <class Message>
-  void operator()(Message& message, Stamp stamp) {
+  void operator()(Message& message, const Sample& sample) {
+    const Stamp stamp = sample.stamp;
     const WallTime::Wall at = wall_.of(stamp.at);
     const bool was_set = times_set_ != wall_.times_set();
     times_set_ = wall_.times_set();
@@ -104,6 +120,33 @@ class Stamper {
   std::uint64_t sequence_ = 0;
   WallTime::Wall last_ = WallTime::Wall::min();
   std::uint32_t times_set_ = 0;
+};
+
+/// Fills what the message of a sample says beside its value.
+class SampleStamper {
+ public:
+  /// `wall` must outlive it.
+  explicit SampleStamper(const WallTime& wall) : wall_(wall), stamper_(wall) {}
+
+  /// Each value, also one that is not published.
+  void see(const Sample& sample) {
+    if (std::exchange(is_unknown_, false) || sample.is_new) since_ = sample.stamp.at;
+  }
+  /// The next value is known since its own stamp, whatever it is.
+  void forget() { is_unknown_ = true; }
+
+  template <class Message>
+  void operator()(Message& message, const Sample& sample) {
+    stamper_(message, sample);
+    message.told = sample.is_told;
+    put_time(message.since, std::min(wall_.of(since_), message_time(message.header.stamp)));
+  }
+
+ private:
+  const WallTime& wall_;
+  Stamper stamper_;
+  Time since_{};
+  bool is_unknown_ = true;
 };
 
 }  // namespace coupler::host

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros1/node.hpp"
 
+#include <coupler_driver/CancelScheduled.h>
+#include <coupler_driver/ListScheduled.h>
+#include <coupler_driver/Points.h>
 #include <coupler_driver/Read.h>
 #include <coupler_driver/Schedule.h>
 #include <coupler_driver/Scheduled.h>
@@ -19,6 +22,7 @@
 #include <fmt/format.h>
 
 #include "coupler/host/ros/node_templates.hpp"
+#include "coupler/host/ros/point_info.hpp"
 #include "coupler/host/ros/topic_depth.hpp"
 #include "coupler/host/ros1/in_place_queue.hpp"
 #include "coupler/host/ros1/logger_service.hpp"
@@ -33,6 +37,8 @@ struct Ros1Services {
   using Write = coupler_driver::Write;
   using Read = coupler_driver::Read;
   using Schedule = coupler_driver::Schedule;
+  using CancelScheduled = coupler_driver::CancelScheduled;
+  using ListScheduled = coupler_driver::ListScheduled;
   using SetBool = std_srvs::SetBool;
   using Trigger = std_srvs::Trigger;
 };
@@ -126,6 +132,27 @@ std::unique_ptr<PointPublisher> Ros1Node::advertise_stamped(const std::string& t
     using Publisher = TypedPublisher<decltype(kind), TopicPublisher, Stamper>;
     return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers, Stamper(wall)));
   });
+}
+
+std::unique_ptr<PointPublisher> Ros1Node::advertise_sample(const std::string& topic, const Point& point,
+                                                           std::uint32_t index, SubscriberCounts& subscribers,
+                                                           const WallTime& wall) {
+  return with_stamped_message<SampleMessages<Ros1Messages>>(point, [&](auto kind) {
+    using Publisher = TypedPublisher<decltype(kind), TopicPublisher, SampleStamper>;
+    return advertise_as(topic, point,
+                        std::make_unique<Publisher>(point, index, subscribers, SampleStamper(wall)));
+  });
+}
+
+std::shared_ptr<void> Ros1Node::publish_points(const std::string& topic, const Map& map) {
+  using Message = coupler_driver::Points;
+  const auto publisher = std::make_shared<TopicPublisher>(advertise_latched<Message>(handle_, topic));
+  publisher->publish(points_of<Message>(map, [](const Point& point) {
+    return with_message<Ros1Messages>(point, [](auto kind) -> std::string {
+      return ros::message_traits::datatype<typename decltype(kind)::Message>();
+    });
+  }));
+  return publisher;
 }
 
 std::shared_ptr<void> Ros1Node::subscribe(const std::string& topic, const Map& map, std::uint32_t index,

@@ -22,6 +22,10 @@ class Ros1Node : public Node {
   std::unique_ptr<PointPublisher> advertise_stamped(const std::string& topic, const Point& point,
                                                     std::uint32_t index, SubscriberCounts& subscribers,
                                                     const WallTime& wall) override;
+  std::unique_ptr<PointPublisher> advertise_sample(const std::string& topic, const Point& point,
+                                                   std::uint32_t index, SubscriberCounts& subscribers,
+                                                   const WallTime& wall) override;
+  std::shared_ptr<void> publish_points(const std::string& topic, const Map& map) override;
   std::shared_ptr<void> subscribe(const std::string& topic, const Map& map, std::uint32_t index,
                                   const WriteHandler& handler) override;
   std::function<void(bool)> advertise_online(const std::string& topic) override;

@@ -2,8 +2,11 @@
 #include "coupler/host/ros2/node.hpp"
 
 #include <rcutils/logging.h>
+#include <coupler_driver/msg/points.hpp>
 #include <coupler_driver/msg/scheduled.hpp>
 #include <coupler_driver/msg/status.hpp>
+#include <coupler_driver/srv/cancel_scheduled.hpp>
+#include <coupler_driver/srv/list_scheduled.hpp>
 #include <coupler_driver/srv/read.hpp>
 #include <coupler_driver/srv/schedule.hpp>
 #include <coupler_driver/srv/write.hpp>
@@ -21,6 +24,7 @@
 #include <fmt/format.h>
 
 #include "coupler/host/ros/node_templates.hpp"
+#include "coupler/host/ros/point_info.hpp"
 #include "coupler/host/ros/topic_depth.hpp"
 #include "coupler/host/ros2/messages.hpp"
 #include "coupler/host/ros2/rcl/service.hpp"
@@ -36,6 +40,8 @@ struct Ros2Services {
   using Write = coupler_driver::srv::Write;
   using Read = coupler_driver::srv::Read;
   using Schedule = coupler_driver::srv::Schedule;
+  using CancelScheduled = coupler_driver::srv::CancelScheduled;
+  using ListScheduled = coupler_driver::srv::ListScheduled;
   using SetBool = std_srvs::srv::SetBool;
   using Trigger = std_srvs::srv::Trigger;
 };
@@ -151,6 +157,29 @@ std::unique_ptr<PointPublisher> Ros2Node::advertise_stamped(const std::string& t
     using Publisher = TypedPublisher<Kind, rcl::Publisher<typename Kind::Message>, Stamper>;
     return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers, Stamper(wall)));
   });
+}
+
+std::unique_ptr<PointPublisher> Ros2Node::advertise_sample(const std::string& topic, const Point& point,
+                                                           std::uint32_t index, SubscriberCounts& subscribers,
+                                                           const WallTime& wall) {
+  return with_stamped_message<SampleMessages<Ros2Messages>>(point, [&](auto kind) {
+    using Kind = decltype(kind);
+    using Publisher = TypedPublisher<Kind, rcl::Publisher<typename Kind::Message>, SampleStamper>;
+    return advertise_as(topic, point,
+                        std::make_unique<Publisher>(point, index, subscribers, SampleStamper(wall)));
+  });
+}
+
+std::shared_ptr<void> Ros2Node::publish_points(const std::string& topic, const Map& map) {
+  using Message = coupler_driver::msg::Points;
+  const auto publisher = std::make_shared<rcl::Publisher<Message>>(
+      node_, topic, rcl::latched(), rcl::PublisherEvents{{}, warn_subscriber(false)});
+  publisher->publish(points_of<Message>(map, [](const Point& point) {
+    return with_message<Ros2Messages>(point, [](auto kind) -> std::string {
+      return rosidl_generator_traits::name<typename decltype(kind)::Message>();
+    });
+  }));
+  return publisher;
 }
 
 std::shared_ptr<void> Ros2Node::subscribe(const std::string& topic, const Map& map, std::uint32_t index,

@@ -189,7 +189,9 @@ void add_rules_of_registers(Section section, Rules& rules) {
   rules.push_back(not_both("counter", "iio"));
   rules.push_back(when(has("bits"), none_of({"offset", "counter", "iio", "pwm"}, section)));
   rules.push_back(when(has("bits"), only("count", {{"const", 1}})));
-  rules.push_back(only("bits", {{"items", {{"type", "integer"}, {"minimum", 0}, {"maximum", 15}}}}));
+  const Json bit_number{{"type", "integer"}, {"minimum", 0}, {"maximum", 15}};
+  const Json all_bits{{"const", Json::array({0, 15})}};
+  rules.push_back(only("bits", {{"items", bit_number}, {"not", all_bits}}));
   if (section == Section::input_register) return;
   rules.push_back(not_both("counter", "pwm"));
   rules.push_back(not_both("iio", "pwm"));

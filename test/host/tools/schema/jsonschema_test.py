@@ -29,6 +29,7 @@ UNSEEN = {name + ".yaml" for name in (
     "tls_with_rtu security_at_the_plain_port serial_and_address unit_of_a_serial_line broadcast_that_is_read broadcast_with_a_watchdog "
     # between points, or between a point and a limit
     "overlap overlap_of_a_word_and_its_bits overlap_of_parts overlap_of_access overlap_of_inputs overlap_of_a_wired_input point_name_is_taken "
+    "names_of_later_topics "
     "line_in_two_points point_exceeds_the_limits unreadable_before_a_write string_is_too_long_to_write preset_area "
     # between roles and what they name
     "security_plain_is_no_role security_role_is_called_none security_of_no_point "
@@ -62,7 +63,7 @@ UNSEEN_MISTAKES = {
 TYPES = {"BOOL": "bit: 3", "BYTE": "offset: low", "SINT": "offset: low", "USINT": "offset: high", "CHAR": "offset: high",
          "STRING": "length: 6", **{name: "" for name in "WORD DWORD LWORD INT DINT LINT UINT UDINT ULINT REAL LREAL".split()}}
 BITS_OF_A_WORD = f"[{', '.join(['on'] * 16)}]"
-KEYS = """bit: 3|offset: low|length: 6|encoding: ascii|ignore_byteorder: true|order: AB|order: CDAB|scale: 0|scale: 0.1|scale: 1|scale: {gain: 1}|
+KEYS = """bit: 3|bits: [8, 11]|bits: [0, 14]|bits: [3, 3]|bits: [0, 15]|bits: [8, 16]|offset: low|length: 6|encoding: ascii|ignore_byteorder: true|order: AB|order: CDAB|scale: 0|scale: 0.1|scale: 1|scale: {gain: 1}|
     scale: {gain: 0}|scale: {gain: 2, offset: -1}|scale: {offset: 5}|min: 1|min: 0.5|min: 40000|min: -1|max: 1e39|
     values: {0: idle, 1: run}|initial: 1|initial: 0.5|initial: -1|initial: 300|initial: 70000|initial: 5e9|
     initial: on|initial: true|initial: "on"|initial: "1"|initial: idle|initial: [1, 0]|initial: [on, off]|
