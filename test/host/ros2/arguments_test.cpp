@@ -53,6 +53,24 @@ TEST(Arguments, ROSs_own_without_ros_args_are_told_where_they_belong) {
             "--disable-rosout-logs: arguments of ROS 2 come after --ros-args\n");
 }
 
+TEST(Arguments, Remappings_are_those_of_topics_and_services_for_this_node) {
+  const auto from = [](const std::string& rule) {
+    const auto found = remappings_of({"coupler_driver", "--ros-args", "-r", rule}, "press_driver");
+    return found.empty() ? std::string() : found.front().from + " to " + found.front().to;
+  };
+  EXPECT_EQ(from("press/lamp:=light"), "press/lamp to light");
+  EXPECT_EQ(from("press_driver:press/lamp:=light"), "press/lamp to light");
+  EXPECT_EQ(from("rostopic://press/lamp:=light"), "press/lamp to light");
+  EXPECT_EQ(from("press_driver:rosservice:///press/safe:=off"), "/press/safe to off");
+  for (const char* const other :
+       {"belt_driver:press/lamp:=light", "__node:=io", "press_driver:__node:=io", "__ns:=/cell"})
+    EXPECT_EQ(from(other), "") << other;
+  EXPECT_EQ(
+      remappings_of({"coupler_driver", "--ros-args", "--remap", "a:=b", "-p", "c:=d", "-r", "e:=f"}, "io")
+          .size(),
+      2U);
+}
+
 TEST(Arguments, A_misspelt_option_is_a_wrong_call) {
   EXPECT_EQ(parse({"--raet", "5"}).exit_code, 2);
   EXPECT_THAT(parse({"--port", "0"}).text, HasSubstr("a whole number from 1 to 65535"));

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What looks at the ROS graph now and then, beside the driver: a thread for it, and what it warns of.
+// What looks at the ROS graph now and then, beside the driver: a thread for it, and duplicates of this
+// driver.
 #pragma once
 
 #include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
-#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -14,7 +14,7 @@
 
 #include <fmt/format.h>
 
-#include "coupler/host/ros/node.hpp"
+#include "coupler/host/ros/once_warnings.hpp"
 
 namespace coupler::host {
 
@@ -56,24 +56,17 @@ struct DuplicateDriver {
   std::string node;
 };
 
-/// Warns of each duplicate once, as long as it is there.
-class DuplicateWarnings {
- public:
-  /// `duplicates`: all that there are now.
-  void update(const std::vector<DuplicateDriver>& duplicates, Node& log) {
-    std::set<std::string> now;
-    for (const auto& [topic, node] : duplicates)
-      if (now.insert(topic + node).second && warned_of_.count(topic + node) == 0)
-        log.log(
-            Level::warning,
-            fmt::format("{} also publishes {}: two drivers write to the same device, or two devices have "
-                        "the same name. Stop one of the drivers, or give its device another name by --name",
-                        node, topic));
-    warned_of_ = std::move(now);
-  }
-
- private:
-  std::set<std::string> warned_of_;
-};
+inline std::vector<Finding> findings_of(const std::vector<DuplicateDriver>& duplicates) {
+  std::vector<Finding> findings;
+  for (const auto& [topic, node] : duplicates)
+    findings.push_back(
+        {topic + node, [topic = topic, node = node] {
+           return fmt::format(
+               "{} also publishes {}: two drivers write to the same device, or two devices have "
+               "the same name. Stop one of the drivers, or give its device another name by --name",
+               node, topic);
+         }});
+  return findings;
+}
 
 }  // namespace coupler::host

@@ -78,6 +78,18 @@ std::vector<DuplicateDriver> duplicates_of(const std::vector<std::string>& own, 
   return duplicates;
 }
 
+/// Adds the ends of other nodes to `others`, from a list of [topic, [node, …]].
+void add_others(XmlRpcValue& all, bool publishes, const TopicCheck& topics, std::vector<Endpoint>& others) {
+  for (int i = 0; i < all.size(); ++i) {
+    const auto& topic = static_cast<std::string&>(all[i][0]);
+    if (topics.needed_type(topic, publishes).empty() && !topics.may_be_mistaken(topic)) continue;
+    XmlRpcValue& nodes = all[i][1];
+    for (int n = 0; n < nodes.size(); ++n)
+      if (const auto& node = static_cast<std::string&>(nodes[n]); node != ros::this_node::getName())
+        others.push_back({topic, node, publishes, {}});
+  }
+}
+
 /// Does what the master does when there is a new publisher: this node connects to those that it does not know
 /// yet.
 void connect_to_publishers(const std::string& own_uri, const std::string& topic,
@@ -94,8 +106,9 @@ void connect_to_publishers(const std::string& own_uri, const std::string& topic,
 
 }  // namespace
 
-Registrations::Registrations()
-    : own_uri_(ros::XMLRPCManager::instance()->getServerURI()),
+Registrations::Registrations(const TopicCheck& topics)
+    : topics_(topics),
+      own_uri_(ros::XMLRPCManager::instance()->getServerURI()),
       service_uri_(fmt::format("rosrpc://{}:{}", ros::network::getHost(),
                                ros::ConnectionManager::instance()->getTCPPort())) {}
 
@@ -117,6 +130,9 @@ void Registrations::update() {
   duplicates_ = duplicates_of(published_, (*state)[0]);
   subscribed_ = own_of((*state)[1]);
   services_ = own_of((*state)[2]);
+  others_.clear();
+  add_others((*state)[0], true, topics_, others_);
+  add_others((*state)[1], false, topics_, others_);
   for (int i = 0; i < types->size(); ++i)
     types_[static_cast<std::string&>((*types)[i][0])] = static_cast<std::string&>((*types)[i][1]);
   XmlRpcValue parameters;
@@ -144,7 +160,8 @@ bool Registrations::restore() const {
   return all;
 }
 
-MasterWatch::MasterWatch(Node& log) : log_(log), thread_(interval, [this] { try_check(); }) {}
+MasterWatch::MasterWatch(Node& log, const TopicCheck& topics)
+    : log_(log), topics_(topics), registrations_(topics), thread_(interval, [this] { try_check(); }) {}
 
 /// A master of another make may answer in a shape that is none of ROS's.
 void MasterWatch::try_check() {
@@ -160,11 +177,18 @@ void MasterWatch::try_check() {
   }
 }
 
+void MasterWatch::warn(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) log_.log(Level::warning, line);
+}
+
 /// The master's data changes seldom, and may be large.
 void MasterWatch::update() {
   if (updates_++ % checks_per_update != 0) return;
   registrations_.update();
-  duplicates_.update(registrations_.duplicates(), log_);
+  warn(duplicates_.update(findings_of(registrations_.duplicates()), "drivers"));
+  std::vector<Endpoint> others = registrations_.others();
+  types_.fill(others, topics_);
+  warn(wrong_topics_.update(topics_.check(others), "ends of topics that do not fit"));
 }
 
 void MasterWatch::check() {

@@ -11,6 +11,8 @@
 #include <coupler_driver/Write.h>
 #include <ros/callback_queue.h>
 #include <ros/console.h>
+#include <ros/names.h>
+#include <ros/this_node.h>
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 
@@ -45,7 +47,8 @@ struct Ros1Services {
 
 class Ros1ServiceThread : public TypedServiceThread<Ros1ServiceThread, Ros1Services> {
  public:
-  explicit Ros1ServiceThread(ros::NodeHandle& handle) : handle_(handle) {}
+  Ros1ServiceThread(ros::NodeHandle& handle, RemappingCheck& remappings)
+      : handle_(handle), remappings_(remappings) {}
   ~Ros1ServiceThread() override {
     queue_.disable();
     if (thread_.joinable()) thread_.join();
@@ -70,11 +73,13 @@ class Ros1ServiceThread : public TypedServiceThread<Ros1ServiceThread, Ros1Servi
           return true;
         },
         ros::VoidPtr(), &queue_);
+    remappings_.add_name(name, false);
     servers_.push_back(handle_.advertiseService(options));
   }
 
  private:
   ros::NodeHandle& handle_;
+  RemappingCheck& remappings_;
   ros::CallbackQueue queue_;
   std::vector<ros::ServiceServer> servers_;
   std::thread thread_;  // last: it uses the others
@@ -99,20 +104,37 @@ TopicPublisher advertise_latched(ros::NodeHandle& handle, const std::string& top
   return {handle, options};
 }
 
+/// Those of parameters and of the node itself are not among them.
+std::vector<Remapping> given_remappings() {
+  std::vector<Remapping> given;
+  for (const auto& [from, to] : ros::names::getUnresolvedRemappings()) given.push_back({from, to});
+  return given;
+}
+
 }  // namespace
 
-Ros1Node::Ros1Node() : loggers_(advertise_loggers(InPlaceQueue::instance())) {
+Ros1Node::Ros1Node()
+    : remappings_(given_remappings(), ros::this_node::getNamespace()),
+      loggers_(advertise_loggers(InPlaceQueue::instance())) {
   diagnostics_.setHardwareID("coupler_driver");  // each device has its own
+}
+
+template <class Message>
+void Ros1Node::note_published(const std::string& topic, const Point* point) {
+  topics_.add_published(handle_.resolveName(topic), ros::message_traits::datatype<Message>(), point);
+  remappings_.add_name(topic, point != nullptr);
 }
 
 template <class Publisher>
 std::unique_ptr<PointPublisher> Ros1Node::advertise_as(const std::string& topic, const Point& point,
-                                                       std::unique_ptr<Publisher> publisher) {
+                                                       std::unique_ptr<Publisher> publisher,
+                                                       bool is_stamped) {
   ros::AdvertiseOptions options;
   options.init<typename Publisher::Message>(topic, topic_depth(point));
   options.latch = point.host.latch;
   count_subscribers(options, *publisher);
   publisher->set_publisher(TopicPublisher(handle_, options));
+  note_published<typename Publisher::Message>(topic, is_stamped ? nullptr : &point);
   return publisher;
 }
 
@@ -120,7 +142,7 @@ std::unique_ptr<PointPublisher> Ros1Node::advertise(const std::string& topic, co
                                                     std::uint32_t index, SubscriberCounts& subscribers) {
   return with_message<Ros1Messages>(point, [&](auto kind) {
     using Publisher = TypedPublisher<decltype(kind), TopicPublisher>;
-    return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers));
+    return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers), false);
   });
 }
 
@@ -130,7 +152,8 @@ std::unique_ptr<PointPublisher> Ros1Node::advertise_stamped(const std::string& t
                                                             const WallTime& wall) {
   return with_stamped_message<Ros1Messages>(point, [&](auto kind) {
     using Publisher = TypedPublisher<decltype(kind), TopicPublisher, Stamper>;
-    return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers, Stamper(wall)));
+    return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers, Stamper(wall)),
+                        true);
   });
 }
 
@@ -168,33 +191,46 @@ std::shared_ptr<void> Ros1Node::subscribe(const std::string& topic, const Map& m
     // Otherwise ROS may ask to try again, which the queue cannot do.
     options.allow_concurrent_callbacks = true;
     options.transport_hints = ros::TransportHints().tcpNoDelay();
+    topics_.add_written(handle_.resolveName(topic), ros::message_traits::datatype<typename Kind::Message>(),
+                        map.points[index]);
+    remappings_.add_name(topic, true);
     return std::shared_ptr<void>(std::make_shared<ros::Subscriber>(handle_.subscribe(options)));
   });
 }
 
 std::function<void(bool)> Ros1Node::advertise_online(const std::string& topic) {
+  note_published<std_msgs::Bool>(topic);
   return online_with<std_msgs::Bool>(advertise_latched<std_msgs::Bool>(handle_, topic));
 }
 
 Node::PublishStatus Ros1Node::advertise_status(const std::string& topic, const Map& map) {
   using Message = coupler_driver::Status;
+  note_published<Message>(topic);
+  devices_.emplace_back(map.name);
+  topics_.add_device(handle_.resolveName(devices_.back(), false), map);
   return status_with<Message>(advertise_latched<Message>(handle_, topic), map, ros::Time::now);
 }
 
 Node::PublishScheduled Ros1Node::advertise_scheduled(const std::string& topic, const Map& map,
                                                      const WallTime& wall) {
   using Message = coupler_driver::Scheduled;
+  note_published<Message>(topic);
   return scheduled_with<Message>(handle_.advertise<Message>(topic, max_scheduled), map, wall);
 }
 
 std::unique_ptr<ServiceThread> Ros1Node::make_service_thread() {
-  return std::make_unique<Ros1ServiceThread>(handle_);
+  return std::make_unique<Ros1ServiceThread>(handle_, remappings_);
 }
 
 void Ros1Node::add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) {
   diagnostics_.add(name, [make = std::move(make)](diagnostic_updater::DiagnosticStatusWrapper& status) {
     fill<diagnostic_msgs::DiagnosticStatus>(status, make());
   });
+}
+
+void Ros1Node::start() {
+  for (const std::string& line : remappings_.unused(devices_)) log(Level::warning, line);
+  master_.emplace(*this, topics_);
 }
 
 void Ros1Node::shut_down() {

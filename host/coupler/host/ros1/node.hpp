@@ -6,8 +6,12 @@
 
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "coupler/host/ros/node.hpp"
+#include "coupler/host/ros/remapping_check.hpp"
+#include "coupler/host/ros/topic_check.hpp"
 #include "coupler/host/ros1/master_watch.hpp"
 
 namespace coupler::host {
@@ -35,7 +39,7 @@ class Ros1Node : public Node {
   std::unique_ptr<ServiceThread> make_service_thread() override;
   void add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) override;
   void publish_diagnostics() override { diagnostics_.force_update(); }
-  void start() override { master_.emplace(*this); }
+  void start() override;
   bool is_running() const override { return ros::ok(); }
   void shut_down() override;
 
@@ -46,9 +50,15 @@ class Ros1Node : public Node {
  private:
   template <class Publisher>
   std::unique_ptr<PointPublisher> advertise_as(const std::string& topic, const Point& point,
-                                               std::unique_ptr<Publisher> publisher);
+                                               std::unique_ptr<Publisher> publisher, bool is_stamped);
+  /// `point`: null where the topic is not that of a point's values.
+  template <class Message>
+  void note_published(const std::string& topic, const Point* point = nullptr);
 
   ros::NodeHandle handle_;
+  TopicCheck topics_;
+  RemappingCheck remappings_;
+  std::vector<std::string> devices_;  ///< their names
   ros::ServiceServer loggers_;
   diagnostic_updater::Updater diagnostics_;
   std::optional<MasterWatch> master_;

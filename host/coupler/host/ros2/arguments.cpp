@@ -100,6 +100,26 @@ Arguments parse_arguments(Span<char* const> arguments) {
   return result;
 }
 
+std::vector<Remapping> remappings_of(const std::vector<std::string>& for_ros, std::string_view node) {
+  std::vector<Remapping> result;
+  for (std::size_t i = 1; i < for_ros.size(); ++i) {
+    if (for_ros[i - 1] != "-r" && for_ros[i - 1] != "--remap") continue;
+    const std::size_t assign = for_ros[i].find(":=");
+    if (assign == std::string::npos) continue;
+    std::string_view from = std::string_view(for_ros[i]).substr(0, assign);
+    // [NODE:][rostopic://]FROM
+    const std::size_t colon = from.find(':');
+    if (colon != std::string_view::npos && from.substr(colon, 3) != "://") {
+      if (from.substr(0, colon) != node) continue;
+      from.remove_prefix(colon + 1);
+    }
+    if (const std::size_t scheme = from.find("://"); scheme != std::string_view::npos)
+      from.remove_prefix(scheme + 3);
+    if (!starts_with(from, "__")) result.push_back({std::string(from), for_ros[i].substr(assign + 2)});
+  }
+  return result;
+}
+
 std::string_view remedy_of(std::string_view refusal) {
   if (has(refusal, "does not know this argument")) return "options of the driver come before --ros-args";
   if (has(refusal, "parameter override rule")) {

@@ -48,7 +48,7 @@ struct Ros2Services {
 
 class Ros2ServiceThread : public TypedServiceThread<Ros2ServiceThread, Ros2Services> {
  public:
-  explicit Ros2ServiceThread(rcl::Node& node) : node_(node) {}
+  Ros2ServiceThread(rcl::Node& node, RemappingCheck& remappings) : node_(node), remappings_(remappings) {}
   ~Ros2ServiceThread() override {
     Ros2ServiceThread::stop();
     if (thread_.joinable()) thread_.join();
@@ -70,6 +70,7 @@ class Ros2ServiceThread : public TypedServiceThread<Ros2ServiceThread, Ros2Servi
 
   template <class S, class Function>
   void serve(const std::string& name, Function function) {
+    remappings_.add_name(name, false);
     services_.push_back(rcl::offer<S>(node_, name, std::move(function), [this](std::function<void()> call) {
       const std::lock_guard lock(mutex_);
       if (stopped_) return;
@@ -93,6 +94,7 @@ class Ros2ServiceThread : public TypedServiceThread<Ros2ServiceThread, Ros2Servi
   }
 
   rcl::Node& node_;
+  RemappingCheck& remappings_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::function<void()>> calls_;
@@ -127,15 +129,27 @@ void Ros2Node::declare_sim_time(bool use_sim_time) {
                        [this](const ParameterServer::Value& now) { clock_.use_simulated(now.bool_value); });
 }
 
+void Ros2Node::check_remappings(std::vector<Remapping> given) {
+  remappings_ = RemappingCheck(std::move(given), rcl_node_get_namespace(node_.get()));
+}
+
+template <class Message>
+void Ros2Node::note_published(const std::string& topic, const Point* point) {
+  topics_.add_published(node_.full_topic(topic), rosidl_generator_traits::name<Message>(), point);
+  remappings_.add_name(topic, point != nullptr);
+}
+
 template <class Publisher>
 std::unique_ptr<PointPublisher> Ros2Node::advertise_as(const std::string& topic, const Point& point,
-                                                       std::unique_ptr<Publisher> publisher) {
+                                                       std::unique_ptr<Publisher> publisher,
+                                                       bool is_stamped) {
   const auto matched = [p = publisher.get()](bool came) {
     came ? p->add_subscriber() : p->remove_subscriber();
   };
   const bool latch = point.host.latch;
   const rmw_qos_profile_t qos = latch ? rcl::latched() : rcl::reliable(topic_depth(point));
   publisher->set_publisher({node_, topic, qos, {matched, warn_subscriber(!latch)}});
+  note_published<typename Publisher::Message>(topic, is_stamped ? nullptr : &point);
   return publisher;
 }
 
@@ -144,7 +158,7 @@ std::unique_ptr<PointPublisher> Ros2Node::advertise(const std::string& topic, co
   return with_message<Ros2Messages>(point, [&](auto kind) {
     using Kind = decltype(kind);
     using Publisher = TypedPublisher<Kind, rcl::Publisher<typename Kind::Message>>;
-    return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers));
+    return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers), false);
   });
 }
 
@@ -155,7 +169,8 @@ std::unique_ptr<PointPublisher> Ros2Node::advertise_stamped(const std::string& t
   return with_stamped_message<Ros2Messages>(point, [&](auto kind) {
     using Kind = decltype(kind);
     using Publisher = TypedPublisher<Kind, rcl::Publisher<typename Kind::Message>, Stamper>;
-    return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers, Stamper(wall)));
+    return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers, Stamper(wall)),
+                        true);
   });
 }
 
@@ -187,6 +202,8 @@ std::shared_ptr<void> Ros2Node::subscribe(const std::string& topic, const Map& m
   return with_message<Ros2Messages>(map.points[index], [&](auto kind) -> std::shared_ptr<void> {
     using Kind = decltype(kind);
     using Message = typename Kind::Message;
+    topics_.add_written(node_.full_topic(topic), rosidl_generator_traits::name<Message>(), map.points[index]);
+    remappings_.add_name(topic, true);
     const std::size_t depth = std::size_t{writes_per_value} * map.points[index].host.queue_size;
     return rcl::subscribe<Message>(
         node_, topic, rcl::reliable(depth),
@@ -201,11 +218,15 @@ std::function<void(bool)> Ros2Node::advertise_online(const std::string& topic) {
   using Message = Ros2Messages::Bool;
   const rcl::Publisher<Message> publisher(node_, topic, rcl::latched(), {{}, warn_subscriber(false)});
   online_topics_.push_back(publisher.topic());
+  note_published<Message>(topic);
   return online_with<Message>(publisher);
 }
 
 Node::PublishStatus Ros2Node::advertise_status(const std::string& topic, const Map& map) {
   using Message = coupler_driver::msg::Status;
+  note_published<Message>(topic);
+  devices_.emplace_back(map.name);
+  topics_.add_device(node_.full_topic(devices_.back(), false), map);
   return status_with<Message>(
       rcl::Publisher<Message>(node_, topic, rcl::latched(), {{}, warn_subscriber(false)}), map,
       [this] { return clock_.now(); });
@@ -214,13 +235,14 @@ Node::PublishStatus Ros2Node::advertise_status(const std::string& topic, const M
 Node::PublishScheduled Ros2Node::advertise_scheduled(const std::string& topic, const Map& map,
                                                      const WallTime& wall) {
   using Message = coupler_driver::msg::Scheduled;
+  note_published<Message>(topic);
   return scheduled_with<Message>(
       rcl::Publisher<Message>(node_, topic, rcl::reliable(max_scheduled), {{}, warn_subscriber(false)}), map,
       wall);
 }
 
 std::unique_ptr<ServiceThread> Ros2Node::make_service_thread() {
-  return std::make_unique<Ros2ServiceThread>(node_);
+  return std::make_unique<Ros2ServiceThread>(node_, remappings_);
 }
 
 void Ros2Node::add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) {
@@ -239,7 +261,11 @@ void Ros2Node::publish_diagnostics() {
 }
 
 void Ros2Node::start() {
-  graph_watch_.emplace(graph_watch_interval, [this] { warn_of_duplicates(); });
+  warn(remappings_.unused(devices_));
+  graph_watch_.emplace(graph_watch_interval, [this] {
+    warn_of_duplicates();
+    warn_of_wrong_topics();
+  });
 }
 
 void Ros2Node::shut_down() {
@@ -271,19 +297,44 @@ rcl::OnIncompatible Ros2Node::warn_publisher() {
   };
 }
 
+void Ros2Node::warn(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) log(Level::warning, line);
+}
+
 void Ros2Node::warn_of_duplicates() {
   std::vector<DuplicateDriver> duplicates;
   for (const std::string& topic : online_topics_) {
     bool is_first_own = true;
-    for (const std::string& node : node_.publishers_of(topic)) {
-      if (node.find("_UNKNOWN_") != std::string::npos) continue;  // the graph does not know its name yet
+    for (const auto& [node, type] : node_.ends_of(topic, rcl::Node::Ends::publishers)) {
+      if (node.empty()) continue;
       if (node != node_.full_name())
         duplicates.push_back({topic, node});
       else if (!std::exchange(is_first_own, false))
         duplicates.push_back({topic, "another node " + node});
     }
   }
-  duplicates_.update(duplicates, *this);
+  warn(duplicates_.update(findings_of(duplicates), "drivers"));
+}
+
+void Ros2Node::add_others(const std::string& topic, rcl::Node::Ends which,
+                          std::vector<Endpoint>& others) const {
+  for (auto& [node, type] : node_.ends_of(topic, which))
+    if (!node.empty() && node != node_.full_name())
+      others.push_back({topic, std::move(node), which == rcl::Node::Ends::publishers, std::move(type)});
+}
+
+/// The ends of a topic cost a look at all ends of the graph: only those of topics with something odd are
+/// asked for.
+void Ros2Node::warn_of_wrong_topics() {
+  std::vector<Endpoint> others;
+  for (const auto& [topic, types] : node_.topics()) {
+    const bool is_own =
+        !topics_.needed_type(topic, false).empty() || !topics_.needed_type(topic, true).empty();
+    if (is_own ? types.size() < 2 : !topics_.may_be_mistaken(topic)) continue;
+    add_others(topic, rcl::Node::Ends::publishers, others);
+    add_others(topic, rcl::Node::Ends::subscriptions, others);
+  }
+  warn(wrong_topics_.update(topics_.check(others), "ends of topics that do not fit"));
 }
 
 void Ros2Node::log(Level level, const std::string& text) {

@@ -12,6 +12,8 @@
 
 #include "coupler/host/ros/graph_watch.hpp"
 #include "coupler/host/ros/node.hpp"
+#include "coupler/host/ros/remapping_check.hpp"
+#include "coupler/host/ros/topic_check.hpp"
 #include "coupler/host/ros2/message_clock.hpp"
 #include "coupler/host/ros2/parameter_server.hpp"
 #include "coupler/host/ros2/rcl/topics.hpp"
@@ -24,10 +26,13 @@ class Ros2Node : public Node {
   /// It is in the graph from now on, and its parameters can be read. Throws rcl::Error.
   Ros2Node(rcl::Context& context, const std::string& name);
 
+  std::string name() const { return node_.name(); }
   std::string full_name() const { return node_.full_name(); }
   ParameterServer& parameters() { return *parameters_; }
   /// Declares the parameter; it may change while the node runs.
   void declare_sim_time(bool use_sim_time);
+  /// Warns at start() of those that change nothing. To be called before anything is made in it.
+  void check_remappings(std::vector<Remapping> given);
 
   std::unique_ptr<PointPublisher> advertise(const std::string& topic, const Point& point, std::uint32_t index,
                                             SubscriberCounts& subscribers) override;
@@ -58,10 +63,16 @@ class Ros2Node : public Node {
  private:
   template <class Publisher>
   std::unique_ptr<PointPublisher> advertise_as(const std::string& topic, const Point& point,
-                                               std::unique_ptr<Publisher> publisher);
+                                               std::unique_ptr<Publisher> publisher, bool is_stamped);
+  /// `point`: null where the topic is not that of a point's values.
+  template <class Message>
+  void note_published(const std::string& topic, const Point* point = nullptr);
   rcl::OnIncompatible warn_subscriber(bool could_latch);
   rcl::OnIncompatible warn_publisher();
+  void warn(const std::vector<std::string>& lines);
   void warn_of_duplicates();
+  void warn_of_wrong_topics();
+  void add_others(const std::string& topic, rcl::Node::Ends which, std::vector<Endpoint>& others) const;
 
   rcl::Node node_;
   bool shows_debug_;
@@ -71,7 +82,11 @@ class Ros2Node : public Node {
   rcl::Publisher<diagnostic_msgs::msg::DiagnosticArray> diagnostics_;
   std::vector<std::pair<std::string, std::function<DiagnosticEntry()>>> entries_;  ///< by name
   std::vector<std::string> online_topics_;                                         ///< with their namespaces
-  DuplicateWarnings duplicates_;
+  OnceWarnings duplicates_;
+  TopicCheck topics_;
+  OnceWarnings wrong_topics_;
+  RemappingCheck remappings_;
+  std::vector<std::string> devices_;           ///< their names
   std::optional<PeriodicThread> graph_watch_;  // last: it uses the others. The middleware may take its time
 };
 

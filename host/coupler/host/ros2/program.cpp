@@ -52,6 +52,7 @@ class Program {
 
   int run() {
     Ros2Node& node = node_.emplace(context_, choose_node_name());
+    node.check_remappings(remappings_of(arguments_.for_ros, node.name()));
     const auto parameters = given_.for_node(node.full_name());
     node.declare_sim_time(value_or_fail(wants_sim_time(parameters)));
     const Settings settings = overlay(value_or_fail(settings_among(parameters, "")), arguments_.settings);

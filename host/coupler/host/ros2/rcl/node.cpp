@@ -10,6 +10,7 @@
 
 #include <cstdarg>
 #include <mutex>
+#include <utility>
 
 #include "coupler/host/ros2/rcl/distro.hpp"
 #include "coupler/host/ros2/rcl/error.hpp"
@@ -94,21 +95,50 @@ bool Node::has_taken(rcl_ret_t result, rcl_ret_t nothing, const char* failure, c
   return result == RCL_RET_OK;
 }
 
-std::vector<std::string> Node::publishers_of(const std::string& full_topic) const {
-  std::vector<std::string> nodes;
+std::string Node::full_topic(const std::string& name, bool remapped) const {
+  char* full = nullptr;
+  const rcl_allocator_t allocator = rcl_get_default_allocator();
+  check(rcl_node_resolve_name(get(), name.c_str(), allocator, false, !remapped, &full),
+        "cannot use the name " + name);
+  std::string result = full;
+  allocator.deallocate(full, allocator.state);
+  return result;
+}
+
+std::vector<Node::End> Node::ends_of(const std::string& full_topic, Ends which) const {
+  std::vector<End> ends;
   rcutils_allocator_t allocator = rcutils_get_default_allocator();
   rcl_topic_endpoint_info_array_t found = rcl_get_zero_initialized_topic_endpoint_info_array();
-  if (rcl_get_publishers_info_by_topic(get(), &allocator, full_topic.c_str(), false, &found) != RCL_RET_OK) {
+  const auto get_info =
+      which == Ends::publishers ? rcl_get_publishers_info_by_topic : rcl_get_subscriptions_info_by_topic;
+  if (get_info(get(), &allocator, full_topic.c_str(), false, &found) != RCL_RET_OK) {
     take_error_text();
-    return nodes;
+    return ends;
   }
   for (std::size_t i = 0; i < found.size; ++i) {
-    std::string space = found.info_array[i].node_namespace;
-    if (space != "/") space += '/';
-    nodes.push_back(space + found.info_array[i].node_name);
+    const rmw_topic_endpoint_info_t& info = found.info_array[i];
+    std::string node = info.node_namespace;
+    if (node != "/") node += '/';
+    node += info.node_name;
+    if (node.find("_UNKNOWN_") != std::string::npos) node.clear();
+    ends.push_back({std::move(node), info.topic_type});
   }
   ignore(rcl_topic_endpoint_info_array_fini(&found, &allocator));
-  return nodes;
+  return ends;
+}
+
+std::vector<Node::Topic> Node::topics() const {
+  std::vector<Topic> topics;
+  rcutils_allocator_t allocator = rcutils_get_default_allocator();
+  rcl_names_and_types_t found = rcl_get_zero_initialized_names_and_types();
+  if (rcl_get_topic_names_and_types(get(), &allocator, false, &found) != RCL_RET_OK) {
+    take_error_text();
+    return topics;
+  }
+  for (std::size_t i = 0; i < found.names.size; ++i)
+    topics.push_back({found.names.data[i], {found.types[i].data, found.types[i].data + found.types[i].size}});
+  ignore(rcl_names_and_types_fini(&found));
+  return topics;
 }
 
 }  // namespace coupler::rcl

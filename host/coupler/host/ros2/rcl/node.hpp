@@ -50,9 +50,24 @@ class Node {
   /// failure is logged.
   bool has_taken(rcl_ret_t result, rcl_ret_t nothing, const char* failure, const char* name);
 
-  /// The nodes that publish the topic, with their namespaces; one entry for each publisher, those of this
-  /// node too.
-  std::vector<std::string> publishers_of(const std::string& full_topic) const;
+  /// Returns the name with its namespace; `remapped`: as the arguments remap topics. Throws Error.
+  std::string full_topic(const std::string& name, bool remapped = true) const;
+
+  /// One end of a topic.
+  struct End {
+    std::string node;  ///< with its namespace; empty: the graph does not know it (yet)
+    std::string type;
+  };
+  enum class Ends { publishers, subscriptions };
+  /// Returns all that the topic has, those of this node too.
+  std::vector<End> ends_of(const std::string& full_topic, Ends which) const;
+
+  struct Topic {
+    std::string name;
+    std::vector<std::string> types;
+  };
+  /// Returns all topics of the graph.
+  std::vector<Topic> topics() const;
 
  private:
   Handle<rcl_node_t> node_;

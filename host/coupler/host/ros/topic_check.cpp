@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/ros/topic_check.hpp"
+
+#include <fmt/format.h>
+
+#include "coupler/base/starts_with.hpp"
+#include "coupler/map/loader/names.hpp"
+#include "coupler/map/nearest.hpp"
+
+namespace coupler::host {
+namespace {
+
+constexpr std::string_view write_end = "/write";
+constexpr std::string_view stamped_end = "/stamped";
+constexpr std::string_view one_by_one =
+    "; the topic of a point and its /write are remapped one by one: remap the other one, too";
+
+/// What stands before the end; empty if the topic has another end.
+std::string before(std::string_view end, std::string_view topic) {
+  if (topic.size() <= end.size() || topic.substr(topic.size() - end.size()) != end) return {};
+  return std::string(topic.substr(0, topic.size() - end.size()));
+}
+
+std::string key_of(const Endpoint& other) {
+  return fmt::format("{} {} {} {}", other.topic, other.publishes ? "<" : ">", other.node, other.type);
+}
+
+std::string read_only(const Endpoint& other, const Point& point) {
+  return fmt::format("{}: node {} publishes here, and the point {} is read only: nothing is written. {}",
+                     other.topic, other.node, point.name,
+                     is_writable(point.table)
+                         ? "If the device lets it be written, give it 'access: read_write' in the map"
+                         : fmt::format("No device lets {} be written", to_string(point.table)));
+}
+
+std::string write_only(const Endpoint& other, const Point& point) {
+  return fmt::format(
+      "{}: node {} subscribes, and the point {} is write only: it receives nothing. If the device lets "
+      "it be read, give it 'access: read_write' in the map",
+      other.topic, other.node, point.name);
+}
+
+std::string not_stamped(const Endpoint& other, const Point& point) {
+  return fmt::format("{}: node {} subscribes, and the point {} is not stamped: it receives nothing. {}",
+                     other.topic, other.node, point.name,
+                     point.count > 1 ? "An array cannot be" : "Give it 'stamped: true' in the map");
+}
+
+std::string nobody_there(const Endpoint& other) {
+  return fmt::format(
+      "{}: node {} {}", other.topic, other.node,
+      other.publishes ? "publishes here, and nobody listens" : "subscribes, and nobody publishes here");
+}
+
+/// Points of the map that fit; for subscribers the other topics of a device, too.
+std::vector<std::string_view> names_of(const Map& map, bool (*fits)(const Point&), bool with_others) {
+  std::vector<std::string_view> names;
+  for (const Point& point : map.points)
+    if (fits(point)) names.push_back(point.name);
+  if (with_others)
+    for (const std::string_view name : loader::driver_topics) names.push_back(name);
+  return names;
+}
+
+}  // namespace
+
+std::string_view TopicCheck::needed_type(const std::string& topic, bool publishes) const {
+  const Topics& own = publishes ? written_ : published_;
+  const auto found = own.find(topic);
+  return found == own.end() ? std::string_view() : found->second.type;
+}
+
+const Point* TopicCheck::point_of(const Topics& topics, const std::string& topic) {
+  const auto found = topics.find(topic);
+  return found == topics.end() ? nullptr : found->second.point;
+}
+
+const TopicCheck::Device* TopicCheck::device_of(const std::string& topic) const {
+  const Device* nearest = nullptr;
+  for (const Device& one : devices_)
+    if (starts_with(topic, one.space) && (nearest == nullptr || one.space.size() > nearest->space.size()))
+      nearest = &one;
+  return nearest;
+}
+
+bool TopicCheck::may_be_mistaken(const std::string& topic) const {
+  if (published_.count(topic) > 0 || written_.count(topic) > 0) return false;
+  return device_of(topic) != nullptr || point_of(published_, before(write_end, topic)) != nullptr ||
+         point_of(published_, before(stamped_end, topic)) != nullptr ||
+         point_of(written_, topic + std::string(write_end)) != nullptr;
+}
+
+std::vector<Finding> TopicCheck::check(const std::vector<Endpoint>& others) const {
+  Names met[2];  // topics that somebody subscribes to, and those that somebody publishes
+  for (const Endpoint& other : others) met[other.publishes ? 1 : 0].insert(other.topic);
+  std::vector<Finding> findings;
+  std::vector<Finding> guesses;
+  for (const Endpoint& other : others) {
+    if (const auto needed = needed_type(other.topic, other.publishes); !needed.empty()) {
+      check_type(other, needed, findings);
+      continue;
+    }
+    if (!may_be_mistaken(other.topic)) continue;
+    const bool is_alone = met[other.publishes ? 0 : 1].count(other.topic) == 0;
+    if (!check_direction(other, is_alone, findings) && is_alone)
+      guesses.push_back({key_of(other), [this, other] { return misspelt(other); }, false});
+  }
+  findings.insert(findings.end(), guesses.begin(), guesses.end());
+  return findings;
+}
+
+void TopicCheck::check_type(const Endpoint& other, std::string_view needed, std::vector<Finding>& findings) {
+  if (other.type.empty() || other.type == "*" || other.type == needed) return;
+  findings.push_back({key_of(other), [other, needed] {
+                        return fmt::format("{}: node {} {} {}, and this topic is {}: {} {}", other.topic,
+                                           other.node, other.publishes ? "publishes" : "subscribes to",
+                                           other.type, needed,
+                                           other.publishes ? "its messages do not arrive. Publish"
+                                                           : "it receives nothing. Subscribe to",
+                                           needed);
+                      }});
+}
+
+/// A topic of a point that goes the other way only. False: it is none.
+bool TopicCheck::check_direction(const Endpoint& other, bool is_alone, std::vector<Finding>& findings) const {
+  const auto add = [&](const Point& point, std::string (*text)(const Endpoint&, const Point&)) {
+    findings.push_back({key_of(other), [other, &point, text] { return text(other, point); }});
+    return true;
+  };
+  const auto elsewhere = [](const Endpoint& end, const Point&) {
+    return nobody_there(end) + std::string(one_by_one);
+  };
+  if (other.publishes) {
+    const Point* const point = point_of(published_, before(write_end, other.topic));
+    if (point == nullptr) return false;
+    if (!is_writable(*point)) return add(*point, read_only);
+    return is_alone && add(*point, elsewhere);
+  }
+  if (!is_alone) return false;
+  if (const Point* const point = point_of(written_, other.topic + std::string(write_end)))
+    return is_readable(*point) ? add(*point, elsewhere) : add(*point, write_only);
+  const Point* const point = point_of(published_, before(stamped_end, other.topic));
+  return point != nullptr && !point->host.stamped && add(*point, not_stamped);
+}
+
+/// Only where a name is near: others may have topics beside those of a device.
+std::string TopicCheck::misspelt(const Endpoint& other) const {
+  const Device* const device = device_of(other.topic);
+  if (device == nullptr) return {};
+  const std::string rest = other.topic.substr(device->space.size());
+  std::string_view end;
+  if (other.publishes)
+    end = write_end;
+  else if (!before(stamped_end, rest).empty())
+    end = stamped_end;
+  const std::string word = end.empty() ? rest : before(end, rest);
+  if (word.empty()) return {};
+  const auto is_stamped = [](const Point& point) { return point.host.stamped; };
+  const auto fits = end == write_end ? static_cast<bool (*)(const Point&)>(is_writable)
+                    : end.empty()    ? static_cast<bool (*)(const Point&)>(is_readable)
+                                     : +is_stamped;
+  const std::string_view near = nearest(word, names_of(*device->map, fits, end.empty()));
+  const std::string meant = fmt::format("{}{}{}", device->space, near, end);
+  if (near.empty() || needed_type(meant, other.publishes).empty()) return {};
+  return fmt::format("{}; did you mean {}?", nobody_there(other), meant);
+}
+
+}  // namespace coupler::host

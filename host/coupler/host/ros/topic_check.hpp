@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "coupler/host/ros/once_warnings.hpp"
+#include "coupler/map/map.hpp"
+
+namespace coupler::host {
+
+/// Another node's end of a topic.
+struct Endpoint {
+  std::string topic;  ///< with its namespace
+  std::string node;
+  bool publishes = false;  ///< or else it subscribes
+  std::string type;        ///< empty: not known; "*": it takes any
+};
+
+/// The topics of this node, and what is wrong with what others do there: they use another type, or a name
+/// that leads nowhere. ROS lets them, and nothing comes.
+class TopicCheck {
+ public:
+  /// `space`: where the device's topics are, "/cell/press". Maps and points must outlive it.
+  void add_device(std::string space, const Map& map) { devices_.push_back({std::move(space) + '/', &map}); }
+  /// The topics that ROS has made. Of a topic that is no point's the point is null.
+  void add_published(const std::string& topic, std::string_view type, const Point* point = nullptr) {
+    published_.emplace(topic, Topic{type, point});
+  }
+  void add_written(const std::string& topic, std::string_view type, const Point& point) {
+    written_.emplace(topic, Topic{type, &point});
+  }
+
+  /// Returns the type that others must have at this topic; empty: this node has no such end of it.
+  std::string_view needed_type(const std::string& topic, bool publishes) const;
+  /// Returns whether others may take it for one of this node's topics, which it is not.
+  bool may_be_mistaken(const std::string& topic) const;
+
+  /// `others`: where needed_type() says something and where may_be_mistaken(). What is sure stands first.
+  /// They refer to this.
+  std::vector<Finding> check(const std::vector<Endpoint>& others) const;
+
+ private:
+  struct Device {
+    std::string space;  ///< with '/' at its end
+    const Map* map;
+  };
+  struct Topic {
+    std::string_view type;
+    const Point* point;
+  };
+  using Topics = std::unordered_map<std::string, Topic>;
+  using Names = std::unordered_set<std::string_view>;
+
+  static const Point* point_of(const Topics& topics, const std::string& topic);
+  const Device* device_of(const std::string& topic) const;
+  static void check_type(const Endpoint& other, std::string_view needed, std::vector<Finding>& findings);
+  bool check_direction(const Endpoint& other, bool is_alone, std::vector<Finding>& findings) const;
+  std::string misspelt(const Endpoint& other) const;
+
+  std::vector<Device> devices_;
+  Topics published_;
+  Topics written_;
+};
+
+}  // namespace coupler::host

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/ros1/topic_types.hpp"
+
+#include <XmlRpcClient.h>
+#include <XmlRpcDispatch.h>
+#include <XmlRpcException.h>
+#include <ros/master.h>
+#include <ros/network.h>
+#include <ros/this_node.h>
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+namespace coupler::host {
+namespace {
+
+using XmlRpc::XmlRpcDispatch;
+using XmlRpc::XmlRpcValue;
+
+/// For all answers together, in seconds: a node may hang.
+constexpr double patience = 1.0;
+
+using Types = std::unordered_map<std::string, std::string>;
+
+/// A call that is under way.
+struct Call {
+  std::unique_ptr<XmlRpc::XmlRpcClient> client;
+  Types* types;
+};
+
+XmlRpcValue own_name() {
+  XmlRpcValue arguments;
+  arguments[0] = ros::this_node::getName();
+  return arguments;
+}
+
+/// Empty: the master does not know the node, or does not answer.
+std::string uri_of(const std::string& node) {
+  XmlRpcValue arguments = own_name();
+  arguments[1] = node;
+  XmlRpcValue response;
+  XmlRpcValue uri;
+  if (!ros::master::execute("lookupNode", arguments, response, uri, false)) return {};
+  return uri.getType() == XmlRpcValue::TypeString ? static_cast<std::string&>(uri) : std::string();
+}
+
+/// Reads [code, text, [[topic, type], …]]. Anything else is left out: a node of another make may answer it.
+void read(XmlRpcValue& answer, Types& types) {
+  try {
+    XmlRpcValue& list = answer[2];
+    for (int i = 0; i < list.size(); ++i)
+      types[static_cast<std::string&>(list[i][0])] = static_cast<std::string&>(list[i][1]);
+  } catch (const XmlRpc::XmlRpcException&) {
+  }
+}
+
+}  // namespace
+
+void TopicTypes::fill(std::vector<Endpoint>& others, const TopicCheck& topics) {
+  std::vector<Endpoint*> ends;
+  for (Endpoint& other : others)
+    if (!topics.needed_type(other.topic, other.publishes).empty()) ends.push_back(&other);
+  find_wanted(ends);
+  ask();
+  for (Endpoint* const end : ends) {
+    const Types& types = nodes_[end->node].types[end->publishes ? 1 : 0];
+    if (const auto found = types.find(end->topic); found != types.end()) end->type = found->second;
+  }
+}
+
+/// Forgets what is there no more, and whom to ask about it.
+void TopicTypes::find_wanted(const std::vector<Endpoint*>& ends) {
+  std::map<std::string, Known> now;
+  for (const Endpoint* const end : ends) {
+    const auto [place, is_new] = now.try_emplace(end->node);
+    Known& node = place->second;
+    if (is_new) node.uri = uri_of(end->node);
+    const int which = end->publishes ? 1 : 0;
+    const auto before = nodes_.find(end->node);
+    const Types* const known =
+        before != nodes_.end() && before->second.uri == node.uri ? &before->second.types[which] : nullptr;
+    const auto type = known == nullptr ? Types::const_iterator() : known->find(end->topic);
+    if (known != nullptr && type != known->end())
+      node.types[which].insert(*type);
+    else
+      node.is_wanted[which] = true;
+  }
+  nodes_ = std::move(now);
+}
+
+/// All at the same time.
+void TopicTypes::ask() {
+  std::vector<Call> calls;  // outlives the dispatch, which refers to its clients
+  XmlRpcDispatch dispatch;
+  const XmlRpcValue arguments = own_name();
+  for (auto& [name, node] : nodes_) {
+    std::string host;
+    std::uint32_t port = 0;
+    if (!ros::network::splitURI(node.uri, host, port)) continue;
+    for (const int which : {0, 1}) {
+      if (!node.is_wanted[which]) continue;
+      auto client = std::make_unique<XmlRpc::XmlRpcClient>(host.c_str(), static_cast<int>(port), "/");
+      if (!client->executeNonBlock(which == 1 ? "getPublications" : "getSubscriptions", arguments)) continue;
+      dispatch.addSource(client.get(), XmlRpcDispatch::WritableEvent | XmlRpcDispatch::Exception);
+      calls.push_back({std::move(client), &node.types[which]});
+    }
+  }
+  if (calls.empty()) return;
+  dispatch.work(patience);
+  for (auto& [client, types] : calls) {
+    XmlRpcValue answer;
+    if (client->executeCheckDone(answer) && answer.getType() == XmlRpcValue::TypeArray && answer.size() == 3)
+      read(answer, *types);
+    dispatch.removeSource(client.get());
+  }
+}
+
+}  // namespace coupler::host
