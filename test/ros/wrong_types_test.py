@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Topics that others use with a wrong type or a wrong name are silent in ROS: the driver warns of each node at each of them."""
+import os
+import shutil
+import signal
+
 import rospy
+from std_msgs.msg import Int32
 
 from support import process, testing, wrong_topics
 
@@ -34,6 +39,17 @@ class WrongTypes(wrong_topics.WrongTopics, testing.RosTest):
         driver = process.Driver(f"_map:={path}", *remappings)
         self.addCleanup(driver.end)
         return driver
+
+    def test_a_node_that_hangs_does_not_keep_others_from_being_told(self):
+        self.begin()
+        hung = process.Process(shutil.which("rostopic"), "pub", f"/{self.name}/setpoint/write", "std_msgs/Int32", "1",
+                               environment=os.environ | {"PYTHONUNBUFFERED": "1"})
+        self.addCleanup(hung.end)
+        self.addCleanup(hung.signal, signal.SIGCONT)
+        hung.wait_for("publishing and latching")
+        hung.signal(signal.SIGSTOP)
+        self.publish(f"/{self.name}/setpoint/write", Int32)
+        self.warned("setpoint/write", f"node {self.PUBLISHER} publishes std_msgs/Int32")
 
 
 if __name__ == "__main__":

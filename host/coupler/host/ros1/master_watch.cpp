@@ -188,7 +188,7 @@ void MasterWatch::update() {
   warn(duplicates_.update(findings_of(registrations_.duplicates()), "drivers"));
   std::vector<Endpoint> others = registrations_.others();
   types_.fill(others, topics_);
-  warn(wrong_topics_.update(topics_.check(others), "ends of topics that do not fit"));
+  warn(wrong_topics_.update(topics_.check(others), "publishers and subscribers with a wrong type or name"));
 }
 
 void MasterWatch::check() {

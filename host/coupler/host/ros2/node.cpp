@@ -34,7 +34,6 @@ namespace coupler::host {
 namespace {
 
 constexpr std::size_t diagnostics_depth = 10;
-constexpr auto graph_watch_interval = std::chrono::seconds(2);
 
 struct Ros2Services {
   using Write = coupler_driver::srv::Write;
@@ -261,11 +260,8 @@ void Ros2Node::publish_diagnostics() {
 }
 
 void Ros2Node::start() {
-  warn(remappings_.unused(devices_));
-  graph_watch_.emplace(graph_watch_interval, [this] {
-    warn_of_duplicates();
-    warn_of_wrong_topics();
-  });
+  for (const std::string& line : remappings_.unused(devices_)) log(Level::warning, line);
+  graph_watch_.emplace(*this, node_, topics_, online_topics_);
 }
 
 void Ros2Node::shut_down() {
@@ -295,46 +291,6 @@ rcl::OnIncompatible Ros2Node::warn_publisher() {
             "publish with reliability reliable",
             topic, policy));
   };
-}
-
-void Ros2Node::warn(const std::vector<std::string>& lines) {
-  for (const std::string& line : lines) log(Level::warning, line);
-}
-
-void Ros2Node::warn_of_duplicates() {
-  std::vector<DuplicateDriver> duplicates;
-  for (const std::string& topic : online_topics_) {
-    bool is_first_own = true;
-    for (const auto& [node, type] : node_.ends_of(topic, rcl::Node::Ends::publishers)) {
-      if (node.empty()) continue;
-      if (node != node_.full_name())
-        duplicates.push_back({topic, node});
-      else if (!std::exchange(is_first_own, false))
-        duplicates.push_back({topic, "another node " + node});
-    }
-  }
-  warn(duplicates_.update(findings_of(duplicates), "drivers"));
-}
-
-void Ros2Node::add_others(const std::string& topic, rcl::Node::Ends which,
-                          std::vector<Endpoint>& others) const {
-  for (auto& [node, type] : node_.ends_of(topic, which))
-    if (!node.empty() && node != node_.full_name())
-      others.push_back({topic, std::move(node), which == rcl::Node::Ends::publishers, std::move(type)});
-}
-
-/// The ends of a topic cost a look at all ends of the graph: only those of topics with something odd are
-/// asked for.
-void Ros2Node::warn_of_wrong_topics() {
-  std::vector<Endpoint> others;
-  for (const auto& [topic, types] : node_.topics()) {
-    const bool is_own =
-        !topics_.needed_type(topic, false).empty() || !topics_.needed_type(topic, true).empty();
-    if (is_own ? types.size() < 2 : !topics_.may_be_mistaken(topic)) continue;
-    add_others(topic, rcl::Node::Ends::publishers, others);
-    add_others(topic, rcl::Node::Ends::subscriptions, others);
-  }
-  warn(wrong_topics_.update(topics_.check(others), "ends of topics that do not fit"));
 }
 
 void Ros2Node::log(Level level, const std::string& text) {

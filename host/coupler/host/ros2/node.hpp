@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "coupler/host/ros/graph_watch.hpp"
 #include "coupler/host/ros/node.hpp"
 #include "coupler/host/ros/remapping_check.hpp"
 #include "coupler/host/ros/topic_check.hpp"
+#include "coupler/host/ros2/graph_watch.hpp"
 #include "coupler/host/ros2/message_clock.hpp"
 #include "coupler/host/ros2/parameter_server.hpp"
 #include "coupler/host/ros2/rcl/topics.hpp"
@@ -69,10 +69,6 @@ class Ros2Node : public Node {
   void note_published(const std::string& topic, const Point* point = nullptr);
   rcl::OnIncompatible warn_subscriber(bool could_latch);
   rcl::OnIncompatible warn_publisher();
-  void warn(const std::vector<std::string>& lines);
-  void warn_of_duplicates();
-  void warn_of_wrong_topics();
-  void add_others(const std::string& topic, rcl::Node::Ends which, std::vector<Endpoint>& others) const;
 
   rcl::Node node_;
   bool shows_debug_;
@@ -82,12 +78,10 @@ class Ros2Node : public Node {
   rcl::Publisher<diagnostic_msgs::msg::DiagnosticArray> diagnostics_;
   std::vector<std::pair<std::string, std::function<DiagnosticEntry()>>> entries_;  ///< by name
   std::vector<std::string> online_topics_;                                         ///< with their namespaces
-  OnceWarnings duplicates_;
   TopicCheck topics_;
-  OnceWarnings wrong_topics_;
   RemappingCheck remappings_;
-  std::vector<std::string> devices_;           ///< their names
-  std::optional<PeriodicThread> graph_watch_;  // last: it uses the others. The middleware may take its time
+  std::vector<std::string> devices_;       ///< their names
+  std::optional<GraphWatch> graph_watch_;  // last: it uses the others
 };
 
 }  // namespace coupler::host

@@ -60,9 +60,12 @@ Context::Context(const std::vector<std::string>& arguments)
 }
 
 Node::Node(Context& context, const std::string& name)
-    : node_(rcl_get_zero_initialized_node(), rcl_node_fini) {
+    : node_(rcl_get_zero_initialized_node(), rcl_node_fini),
+      graph_changes_(rcl_get_zero_initialized_wait_set(), rcl_wait_set_fini) {
   const rcl_node_options_t options = rcl_node_get_default_options();
   check(rcl_node_init(get(), name.c_str(), "", context.get(), &options), "cannot make the node " + name);
+  check(rcl_wait_set_init(graph_changes_.get(), 0, 1, 0, 0, 0, 0, context.get(), rcl_get_default_allocator()),
+        "cannot watch the graph");
   // The log goes to /rosout, too, unless --disable-rosout-logs was given.
 #if COUPLER_RCL_LEAVES_ROSOUT_TO_US
   if (rcl_logging_rosout_enabled())
@@ -103,6 +106,16 @@ std::string Node::full_topic(const std::string& name, bool remapped) const {
   std::string result = full;
   allocator.deallocate(full, allocator.state);
   return result;
+}
+
+bool Node::graph_has_changed() {
+  rcl_wait_set_t* const changes = graph_changes_.get();
+  rcl_ret_t result = rcl_wait_set_clear(changes);
+  if (result == RCL_RET_OK)
+    result = rcl_wait_set_add_guard_condition(changes, rcl_node_get_graph_guard_condition(get()), nullptr);
+  if (result == RCL_RET_OK) result = rcl_wait(changes, 0);
+  if (result != RCL_RET_OK) take_error_text();
+  return result != RCL_RET_TIMEOUT;  // after a failure somebody has to look
 }
 
 std::vector<Node::End> Node::ends_of(const std::string& full_topic, Ends which) const {

@@ -3,6 +3,7 @@
 
 #include <rcl/context.h>
 #include <rcl/node.h>
+#include <rcl/wait.h>
 
 #include <string>
 #include <vector>
@@ -53,6 +54,9 @@ class Node {
   /// Returns the name with its namespace; `remapped`: as the arguments remap topics. Throws Error.
   std::string full_topic(const std::string& name, bool remapped = true) const;
 
+  /// Returns whether an end of a topic or a name has come or gone since the last call. For one thread.
+  bool graph_has_changed();
+
   /// One end of a topic.
   struct End {
     std::string node;  ///< with its namespace; empty: the graph does not know it (yet)
@@ -71,6 +75,7 @@ class Node {
 
  private:
   Handle<rcl_node_t> node_;
+  Handle<rcl_wait_set_t> graph_changes_;
   LogLineLimit failures_;
   Inbox inbox_;
 };
