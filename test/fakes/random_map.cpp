@@ -24,6 +24,8 @@ RandomMap::RandomMap(std::uint32_t seed, unsigned most_points_a_table)
     : random_(seed), most_points_(most_points_a_table) {
   head_ = head();
   for (const Table table : tables) holds_bits(table) ? add_bits(table) : add_registers(table);
+  if (head_.find("read_whole") != std::string::npos)
+    rows_.push_back({fmt::format("p{}", names_++), Table::input_registers, 60012, 1, "", ", type: UINT", ""});
   for (Row& row : rows_)
     if (one_in(4)) add_initial(row);
 }
@@ -36,7 +38,7 @@ std::string RandomMap::head() {
   if (one_in(2)) text += "wordorder_reverse: true\n";
   if (one_in(2)) text += fmt::format("registers_read_continuous: {}\n", one_in(2));
   if (one_in(2)) text += fmt::format("address: 10.0.0.{}\nport: {}\n", 1 + below(254), 1 + below(65535));
-  // Where no point is.
+  // Where no other point is.
   if (one_in(4)) text += "unreadable: [{table: input_registers, from: 60000, to: 60009}]\n";
   if (one_in(4)) text += "read_whole: [{table: input_registers, from: 60010, to: 60019}]\n";
   if (one_in(3)) text += fmt::format("limits: {{read_registers: {}}}\n", 32 + below(94));
@@ -76,6 +78,16 @@ std::uint32_t RandomMap::add_shared(Table table, std::uint32_t address) {
     for (const std::string_view half : {"high", "low"})
       rows_.push_back({fmt::format("p{}", names_++), table, address, 1, fmt::format(", offset: {}", half),
                        fmt::format(", type: {}", byte_types[below(byte_types.size())]), ""});
+    return 1;
+  }
+  if (one_in(3)) {
+    const std::uint32_t cut = 2 + below(11);
+    const std::string_view order = one_in(2) ? ", order: BA" : "";
+    for (const auto& [first, last] : {std::pair(0U, cut - 1), std::pair(cut + 1, 15U)})
+      if (last > first)
+        rows_.push_back({fmt::format("p{}", names_++), table, address, 1,
+                         fmt::format(", bits: [{}, {}]", first, last),
+                         fmt::format(", type: {}{}", one_in(2) ? "UINT" : "WORD", order), ""});
     return 1;
   }
   for (std::uint32_t bit = below(4); bit < 16; bit += 1 + below(6))
@@ -125,7 +137,8 @@ void RandomMap::add_initial(Row& row) {
   else if (row.format.find("STRING") != std::string::npos)
     row.format += fmt::format(", initial: \"{}\"", static_cast<char>('A' + below(26)));
   else
-    row.format += fmt::format(", initial: {}", below(128));
+    row.format +=
+        fmt::format(", initial: {}", row.part.find("bits") == std::string::npos ? below(128) : below(4));
 }
 
 std::string RandomMap::keys_of(const Row& row) {

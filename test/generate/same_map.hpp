@@ -24,6 +24,7 @@ inline void expect_same(const codec::Format& a, const codec::Format& b) {
   EXPECT_EQ(a.order, b.order);
   EXPECT_EQ(a.half, b.half);
   EXPECT_EQ(a.bit, b.bit);
+  EXPECT_EQ(a.bits, b.bits);
   EXPECT_EQ(a.length, b.length);
   EXPECT_EQ(a.encoding, b.encoding);
 }

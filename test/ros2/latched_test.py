@@ -71,8 +71,8 @@ class Latched(testing.RosTest):
         self.assertLessEqual(set(volatile.values), {7, 11}, "11: it had come before the first reading")
 
     def test_the_policies_are_those_of_ros_2(self):
-        offered = {f"/kept/{name}": DurabilityPolicy.VOLATILE for name in ("always", "always/stamped", "lamp")}
-        offered.update({f"/kept/{name}": DurabilityPolicy.TRANSIENT_LOCAL for name in ("last", "last/stamped", "array", "online", "status")})
+        offered = {f"/kept/{name}": DurabilityPolicy.VOLATILE for name in ("always", "always/stamped", "always/sample", "lamp")}
+        offered.update({f"/kept/{name}": DurabilityPolicy.TRANSIENT_LOCAL for name in ("last", "last/stamped", "last/sample", "array", "online", "points", "status")})
         offered["/diagnostics"] = DurabilityPolicy.VOLATILE
         for name, durability in offered.items():
             wait_until(lambda n=name: polled.get_publishers_info_by_topic(n), f"a publisher of {name}")

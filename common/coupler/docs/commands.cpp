@@ -8,6 +8,7 @@
 
 #include "coupler/base/starts_with.hpp"
 #include "coupler/docs/words.hpp"
+#include "coupler/plan/read_span.hpp"
 
 namespace coupler::docs {
 namespace {
@@ -63,7 +64,9 @@ std::vector<Command> mbpoll_commands(const Map& map) {
                                            : fmt::format("tcp -1 -0 -a {} -p {}", at.unit, at.port);
   std::vector<Command> commands;
   for (const Table table : tables) {
-    const Point* point = first(map, [&](const Point& p) { return p.table == table && is_readable(p); });
+    const Point* point = first(map, [&](const Point& p) {
+      return p.table == table && is_readable(p) && plan::read_extent(map, p) == read_range(p);
+    });
     if (point == nullptr) continue;
     commands.push_back(
         {fmt::format("{} of the {}", point->name, words(table)),

@@ -149,7 +149,9 @@ std::string words(const EdgeOf& edge) {
 
 std::string range_words(const Point& point) {
   const Type type = point.format.type;
-  if (!codec::is_scalable(type)) return {};
+  if (!codec::is_scalable(type))
+    return point.format.bits != 0 ? fmt::format("0 … {}", codec::largest_in(point.format.bits))
+                                  : std::string();
   if (!point.values.empty()) {
     std::string list;
     for (const NamedValue& named : point.values) add(list, fmt::format("{} {}", named.value, named.name));

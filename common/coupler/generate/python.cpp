@@ -128,15 +128,17 @@ std::string allowed_arguments(const Point& point, std::string_view member) {
   return out;
 }
 
-std::string spec(const Limits& limits, const Point& point, std::string_view member) {
+std::string spec(const Map& map, const Point& point, std::string_view member) {
   std::string out = fmt::format("{}, \"{}\", {}, \"{}\"", python_literal(point.name), to_string(point.table),
                                 point.address, to_string(point.format.type));
   if (!holds_bits(point.table))
     out += format_arguments(point);
   else if (point.count > 1)
     out += fmt::format(", count={}", point.count);
-  if (is_writable(point)) out += fmt::format(", write_with={}", function_code(point, limits));
+  if (is_writable(point)) out += fmt::format(", write_with={}", function_code(point, map.limits));
   if (point.read_address) out += fmt::format(", read_address={}", *point.read_address);
+  if (const modbus::Range whole = plan::read_extent(map, point); whole != read_range(point))
+    out += fmt::format(", whole=({}, {})", whole.start(), whole.count());
   if (point.host.verify_write) out += ", verify_write=True";
   return out + allowed_arguments(point, member);
 }
@@ -257,7 +259,7 @@ std::string python_client(const Map& map, const Provenance& provenance) {
     const std::string_view kind = point_class(point.access);
     points += fmt::format("        #: {}\n        self.{}: {}[{}] = {}(self, Spec(\n            {}))\n",
                           printable(documentation(point)), names[i], kind, python_type(point), kind,
-                          spec(map.limits, point, names[i]));
+                          spec(map, point, names[i]));
   }
   const Connection& connection = map.connection;
   return fmt::format(

@@ -23,22 +23,50 @@ NodeMemory node_memory(const Map& map);
 
 enum class Mapped : std::uint8_t { all, readable, writable };
 
+/// Joins ranges that come by their starts, and calls `use` with what is joined.
+template <class Use>
+class JoinedRanges {
+ public:
+  explicit JoinedRanges(Use& use) : use_(use) {}
+  void add(modbus::Range next) {
+    if (start_ != end_ && next.start() > end_) end();
+    if (start_ == end_) start_ = end_ = next.start();
+    end_ = std::max(end_, next.end());
+  }
+  void end() {
+    if (start_ != end_) use_(modbus::Range::of(start_, end_ - start_));
+    start_ = end_ = 0;
+  }
+
+ private:
+  Use& use_;
+  std::uint32_t start_ = 0;
+  std::uint32_t end_ = 0;
+};
+
 /// Calls `use` with each maximal range of a table's mapped addresses, ascending; the identity area and the
-/// register that resets the watchdog among them, except for Mapped::writable.
+/// register that resets the watchdog among them, except for Mapped::writable. What is read whole is mapped,
+/// too: clients ask for all of it.
 template <class Use>
 void each_range(const Map& map, Table table, Mapped which, Use use) {
-  std::uint32_t start = 0;
-  std::uint32_t end = 0;
+  JoinedRanges<Use> ranges(use);
+  const auto* area = which == Mapped::writable ? map.read_whole.end() : map.read_whole.begin();
+  const auto add_areas = [&](std::uint32_t up_to) {
+    for (; area != map.read_whole.end() && index(area->table) <= index(table); ++area) {
+      if (area->table != table || area->range.end() > identity::reserved.start()) continue;
+      if (area->range.start() > up_to) return;
+      ranges.add(area->range);
+    }
+  };
   for (const Point& point : map.points) {
     if (point.table != table || (which == Mapped::readable && !is_readable(point)) ||
         (which == Mapped::writable && !is_writable(point)))
       continue;
-    const modbus::Range next = range(point);
-    if (start != end && next.start() > end) use(modbus::Range::of(start, end - start));
-    if (start == end || next.start() > end) start = next.start();
-    end = std::max(end, next.end());
+    add_areas(point.address);
+    ranges.add(range(point));
   }
-  if (start != end) use(modbus::Range::of(start, end - start));
+  add_areas(identity::reserved.start());
+  ranges.end();
   if (which == Mapped::writable) return;
   if (table == Table::input_registers) use(modbus::Range::of(identity::reserved.start(), identity::size));
   if (table == Table::holding_registers && map.service.watchdog.needs_reset()) use(identity::watchdog_reset);

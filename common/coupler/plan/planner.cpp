@@ -171,6 +171,7 @@ bool Planner::refuses(Table table, Range range, Span<const TableRange> refused) 
 
 std::optional<Reason> Planner::why_apart(const ReadSpan& span, Range next, Range needed,
                                          const Wishes& wishes) const {
+  if (span.range.contains(next)) return std::nullopt;  // apart they would be the same request
   const Range both = hull(span.range, next);
   if (next.start() > span.range.end()) {
     const Range hole = Range::of(span.range.end(), next.start() - span.range.end());

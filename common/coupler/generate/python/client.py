@@ -124,9 +124,14 @@ class Client:
 
     def _read_words(self, spec: Spec) -> list[int]:
         try:
-            return self._read(spec.table, spec.read_from, spec.count * spec.size)
+            return self._read_own(spec)
         except ExceptionReply as error:
             raise ExceptionReply(error.code, f"{spec.name}: ") from None
+
+    def _read_own(self, spec: Spec) -> list[int]:
+        """The point's registers, by a request for all that the device gives in one piece."""
+        first, count = spec.whole or (spec.read_from, spec.count * spec.size)
+        return self._read(spec.table, first, count)[spec.read_from - first:][:spec.count * spec.size]
 
     def _power_of(self, spec: Spec, known: dict[str, list[int]]) -> int | None:
         """The exponent of the scale; None if the device has none. `known`: registers that were read already."""
@@ -165,7 +170,7 @@ class Client:
             self._ask("mask_write_register", 22, address=spec.address, and_mask=spec.mask ^ 0xFFFF, or_mask=words[0])
             return
         if spec.mask != 0xFFFF:
-            words = [self._read(spec.table, spec.read_from, 1)[0] & ~spec.mask | words[0]]
+            words = [self._read_own(spec)[0] & ~spec.mask | words[0]]
         if spec.write_with == 5:
             self._ask("write_coil", 5, address=spec.address, value=bool(words[0]))
         elif spec.write_with == 15:
@@ -176,7 +181,7 @@ class Client:
             self._ask("write_registers", 16, address=spec.address, values=words)
 
     def _verify(self, spec: Spec, words: list[int]) -> None:
-        found = [word & spec.mask for word in self._read(spec.table, spec.read_from, len(words))]
+        found = [word & spec.mask for word in self._read_own(spec)]
         if found != words:
             raise NotTaken(f"{spec.name}: {spec.shown(words)!r} was written and acknowledged, but {spec.shown(found)!r} "
                            "reads back")

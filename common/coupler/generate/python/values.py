@@ -139,6 +139,7 @@ class Spec:
     mask: int = 0xFFFF                 # which bits of the register are the point's
     write_with: int = 0                # function code
     read_address: int | None = None    # where it reads back, if not at `address`
+    whole: tuple[int, int] | None = None  # what a request has to read for it, if more: first, count
     verify_write: bool = False         # read back after a write
     length: int = 0                    # bytes of a text
     encoding: str = ""
@@ -244,9 +245,6 @@ class Spec:
 
     def _in_part(self, value: int) -> list[int]:
         mask = _reordered([self.mask], self.order)[0]
-        most = mask // (mask & -mask)
-        if value > most:
-            self.refuse(f"{value} does not fit into {most.bit_length()} bits (0 to {most})")
         return _reordered([value * (mask & -mask)], self.order)
 
     def _encode_one(self, value: Any) -> list[int]:
@@ -305,14 +303,14 @@ class Spec:
         if not least <= number <= most:
             if self._limited:  # the range of the type is not what may be sent
                 self.refuse(f"{number} is not allowed; send {self.allowed}")
-            self.refuse(f"{number} does not fit into {self.type} ({least} to {most})")
+            what = self.type if self.mask in (0xFFFF, 0xFF00, 0x00FF) else f"{bin(self.mask).count('1')} bits"
+            self.refuse(f"{number} does not fit into {what} ({least} to {most})")
         return int(number)
 
-    @staticmethod
-    def _ends(letter: str) -> tuple[Any, Any]:
+    def _ends(self, letter: str) -> tuple[Any, Any]:
         if letter in "fd":
             return -_MOST[letter], _MOST[letter]
-        bits = 8 * struct.calcsize(">" + letter)
+        bits = 8 * struct.calcsize(">" + letter) if self.mask == 0xFFFF else bin(self.mask).count("1")
         return (-(1 << bits - 1), (1 << bits - 1) - 1) if letter.islower() else (0, (1 << bits) - 1)
 
     def _unscaled(self, letter: str, number: int | float) -> int | float:

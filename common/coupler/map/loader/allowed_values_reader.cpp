@@ -105,7 +105,8 @@ bool read_name(const Entry& entry, const Point& point, std::vector<NamedValue>& 
   std::array<std::uint16_t, 4> registers{};
   if (const auto held = codec::encode(codec::Value{*value}, point.format, registers.data()); !held)
     return wrong(entry.key_at, fmt::format("'values': {}", held.error()),
-                 "write a value that the type can hold");
+                 point.format.bits != 0 ? "write a value that these bits can hold"
+                                        : "write a value that the type can hold");
   const bool is_new_value = seen.values.insert(*value).second;
   const bool is_new_name = seen.names.insert(entry.text).second;
   if (!is_new_value || !is_new_name)

@@ -192,17 +192,19 @@ void read_faults(const Reader& reader, Point& point, const Context& context) {
     return;
   }
   const codec::PublishedRange range = codec::published_range(point.format, {});
+  const std::string of = point.format.bits != 0 ? fmt::format("its {} bits", point.format.bits)
+                                                : std::string(to_string(point.format.type));
   const auto check = [&](std::string_view key, double bound, bool is_in_range) {
     const bool is_whole = codec::is_float(point.format.type) || std::trunc(bound) == bound;
     if (reader.has(key) && !is_whole)
-      context.problems.error(reader.find(key)->at,
-                             fmt::format("'{}' is {:.15g}, but raw values of {} are whole numbers", key,
-                                         bound, to_string(point.format.type)),
-                             "write the raw value, as the register holds it before 'scale'");
+      context.problems.error(
+          reader.find(key)->at,
+          fmt::format("'{}' is {:.15g}, but raw values of {} are whole numbers", key, bound, of),
+          "write the raw value, as the register holds it before 'scale'");
     else if (reader.has(key) && !is_in_range)
       context.problems.error(reader.find(key)->at,
                              fmt::format("'{}' is {:.15g}, but raw values of {} are {:.15g} to {:.15g}", key,
-                                         bound, to_string(point.format.type), range.least, range.most),
+                                         bound, of, range.least, range.most),
                              "write a raw value between them, as the register holds it before 'scale'");
   };
   check("fault_below", faults.below, faults.below > range.least && faults.below <= range.most);

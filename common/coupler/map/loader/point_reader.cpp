@@ -54,7 +54,9 @@ void read_count(const Reader& reader, Point& point, const Context& context) {
   if (point.count == 1 || holds_bits(point.table)) return;
   const codec::Type type = point.format.type;
   if (type == codec::Type::STRING || is_partial(point))
-    context.problems.error(entry->key_at, fmt::format("there are no arrays of {}", to_string(type)),
+    context.problems.error(entry->key_at,
+                           fmt::format("there are no arrays of {}",
+                                       point.format.bits != 0 ? "numbers in bits" : to_string(type)),
                            type == codec::Type::STRING
                                ? "write one point for each text"
                                : "write one point each, or use a type of whole registers");

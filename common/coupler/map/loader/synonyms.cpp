@@ -150,8 +150,9 @@ constexpr std::string_view swapped =
     "write CDAB if the registers are swapped, BADC if the bytes of each register are";
 
 constexpr std::string_view of_halves =
-    "no order swaps registers within the halves of 64 bits only; map each half as a point of 32 bits with an "
-    "order of its own, and join them in your program";
+    "no order swaps registers within the halves of 64 bits only; map each half of such a value as a point of "
+    "32 "
+    "bits with an order of its own, and join them in your program";
 
 constexpr ChoiceSynonym choices[] = {
     {"access", "r", "did you mean 'read'?"},

@@ -33,6 +33,7 @@ std::string remedy_for_other_type(const Entry& given, Type type) {
   if (given.key == "offset" && parse_number(given.text) && codec::is_scalable(type))
     return fmt::format(
         "what is added to a value belongs to its scale, as in 'scale: {{gain: 1, offset: {}}}'", given.text);
+  if (given.key == "bits") return "write 'type: UINT', or USINT, WORD or BYTE";
   if (given.key == "bit") return "write 'type: BOOL' for one bit of the register, or remove it";
   if (given.key == "length")
     return fmt::format("remove it: {} says how many registers there are; 'type: STRING' is for texts",
@@ -85,7 +86,7 @@ bool check_order(const Entry& order, Type type, const Context& context) {
 
 /// Refuses the other keys that say where a value is, or that need whole registers.
 bool goes_with_bits(const Reader& reader) {
-  for (const std::string_view key : {"offset", "count", "counter"})
+  for (const std::string_view key : {"offset", "counter", "iio", "pwm"})
     if (reader.has(key)) {
       reader.refuse(key, fmt::format("'{}' does not go with 'bits'", key), "remove one of the two");
       return false;
@@ -96,7 +97,9 @@ bool goes_with_bits(const Reader& reader) {
 /// `bits: [8, 11]`.
 void read_bits(const Reader& reader, Format& format, const Context& context) {
   const Entry* entry = reader.find("bits");
-  if (entry == nullptr || !goes_with_bits(reader)) return;
+  if (entry == nullptr || !applies_to(*find_key("bits", Section::holding_register), to_string(format.type)) ||
+      !goes_with_bits(reader))
+    return;
   std::array<std::optional<std::uint64_t>, 2> ends;
   if (entry->kind == Entry::Kind::list && entry->children.size() == 2)
     for (std::size_t i = 0; i < 2; ++i)
@@ -226,7 +229,8 @@ class ValueWriter {
     if (!value) return wrong(entry, expected(point_.format.type));
     if (const auto encoded = codec::encode(*value, point_.format, registers); !encoded) {
       context_.problems.error(entry.at, fmt::format("'{}': {}", key_, encoded.error()),
-                              "write a value that the type can hold");
+                              point_.format.bits != 0 ? "write a value that these bits can hold"
+                                                      : "write a value that the type can hold");
       return false;
     }
     return true;
@@ -312,9 +316,10 @@ void read_format(const Reader& reader, const Entry& point, Order order, Format& 
                  const Context& context) {
   const std::size_t errors = context.problems.errors();
   if (!reader.has("type")) {
-    context.problems.error(
-        point.key_at, fmt::format("{} has no type", shown(point.key)),
-        reader.has("bit") ? "add 'type: BOOL'" : "add 'type: INT', or what the registers hold");
+    context.problems.error(point.key_at, fmt::format("{} has no type", shown(point.key)),
+                           reader.has("bits")  ? "add 'type: UINT'"
+                           : reader.has("bit") ? "add 'type: BOOL'"
+                                               : "add 'type: INT', or what the registers hold");
     return;
   }
   read_type(reader, format.type, context);

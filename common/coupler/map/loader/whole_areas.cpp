@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "coupler/map/loader/rules.hpp"
+#include "coupler/modbus/limits.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -59,8 +60,16 @@ void check_whole_areas(const Areas& whole, const Areas& unreadable, const DraftP
       context.problems.error(
           area.at,
           fmt::format("this area has {} addresses, but a request may ask for {}", area.range.count(), most),
-          fmt::format("make it smaller; the device's limit is 'limits: {{{}: ...}}'",
-                      holds_bits(area.table) ? "read_bits" : "read_registers"));
+          most < modbus::max_read_registers || (holds_bits(area.table) && most < modbus::max_read_bits)
+              ? fmt::format("make it smaller; the device's limit is 'limits: {{{}: ...}}'",
+                            holds_bits(area.table) ? "read_bits" : "read_registers")
+              : "make it smaller: no reply has room for more");
+    if (std::none_of(points.begin(), points.end(), [&](const DraftPoint& draft) {
+          return draft.point.table == area.table && draft.placed &&
+                 read_range(draft.point).overlaps(area.range);
+        }))
+      context.problems.warning(area.at, "no point is in this area of 'read_whole'",
+                               "remove it, or correct its addresses");
     check_others(area, whole.data(), &area, "read_whole", context);
     check_others(area, unreadable.data(), unreadable.data() + unreadable.size(), "unreadable", context);
   }

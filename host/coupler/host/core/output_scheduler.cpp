@@ -160,8 +160,8 @@ Result<std::optional<ScheduleAnswer>> OutputScheduler::give_to_node(const Schedu
 ScheduleAnswer OutputScheduler::keep(const ScheduledWrite& what) {
   if (what.duration.count() > 0)
     return {0, fmt::format(
-                   "how_long needs a node, which ends an output by itself, and a whole register or bit of "
-                   "its tables. Send how_long 0. Schedule a second write of {} to end it",
+                   "only a node ends an output by itself, and no part of a register. Leave out the duration "
+                   "(how_long: 0). Schedule a second write of {} to end it",
                    point(what).name)};
   const std::uint32_t number = accept(what, false);
   by_driver_.add({number, what});

@@ -59,7 +59,7 @@ void PollCycle::start(Time now) {
 }
 
 /// Gives up the points of leave_out(). No request may include their addresses, because the device may have
-/// something else there.
+/// something else there; unless it gives them only together with those of another point.
 void PollCycle::give_up_left_out() {
   for (const std::uint32_t point : left_out_) {
     const Point& left_out = planner_.map().points[point];

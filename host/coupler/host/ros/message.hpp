@@ -133,7 +133,7 @@ struct BitsMessage {
       T value = 0;
       for (std::size_t i = 0; i < bits; ++i)
         if (*in++) value = static_cast<T>(value | T{1} << i);
-      codec::put(value, point.format, registers);
+      if (std::string wrong = TypedValue<T>::encode(value, point, registers); !wrong.empty()) return wrong;
     }
     return {};
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros/topic_check.hpp"
 
+#include <iterator>
+
 #include <fmt/format.h>
 
 #include "coupler/base/starts_with.hpp"
@@ -11,7 +13,7 @@ namespace coupler::host {
 namespace {
 
 constexpr std::string_view write_end = "/write";
-constexpr std::string_view stamped_end = "/stamped";
+constexpr std::string_view stamped_ends[] = {"/stamped", "/sample"};
 constexpr std::string_view one_by_one =
     "; the topic of a point and its /write are remapped one by one: remap the other one, too";
 
@@ -19,6 +21,19 @@ constexpr std::string_view one_by_one =
 std::string before(std::string_view end, std::string_view topic) {
   if (topic.size() <= end.size() || topic.substr(topic.size() - end.size()) != end) return {};
   return std::string(topic.substr(0, topic.size() - end.size()));
+}
+
+/// The end that is one of those of stamped points; empty: it has none.
+std::string_view stamped_end(std::string_view topic) {
+  for (const std::string_view end : stamped_ends)
+    if (!before(end, topic).empty()) return end;
+  return {};
+}
+
+/// What stands before it; empty if there is none.
+std::string before_stamped_end(std::string_view topic) {
+  const std::string_view end = stamped_end(topic);
+  return end.empty() ? std::string() : before(end, topic);
 }
 
 std::string key_of(const Endpoint& other) {
@@ -57,8 +72,9 @@ std::vector<std::string_view> names_of(const Map& map, bool (*fits)(const Point&
   std::vector<std::string_view> names;
   for (const Point& point : map.points)
     if (fits(point)) names.push_back(point.name);
-  if (with_others)
-    for (const std::string_view name : loader::driver_topics) names.push_back(name);
+  if (!with_others) return names;
+  names.push_back(loader::points_topic);
+  names.insert(names.end(), std::begin(loader::driver_topics), std::end(loader::driver_topics));
   return names;
 }
 
@@ -86,7 +102,7 @@ const TopicCheck::Device* TopicCheck::device_of(const std::string& topic) const 
 bool TopicCheck::may_be_mistaken(const std::string& topic) const {
   if (published_.count(topic) > 0 || written_.count(topic) > 0) return false;
   return device_of(topic) != nullptr || point_of(published_, before(write_end, topic)) != nullptr ||
-         point_of(published_, before(stamped_end, topic)) != nullptr ||
+         point_of(published_, before_stamped_end(topic)) != nullptr ||
          point_of(written_, topic + std::string(write_end)) != nullptr;
 }
 
@@ -139,7 +155,7 @@ bool TopicCheck::check_direction(const Endpoint& other, bool is_alone, std::vect
   if (!is_alone) return false;
   if (const Point* const point = point_of(written_, other.topic + std::string(write_end)))
     return is_readable(*point) ? add(*point, elsewhere) : add(*point, write_only);
-  const Point* const point = point_of(published_, before(stamped_end, other.topic));
+  const Point* const point = point_of(published_, before_stamped_end(other.topic));
   return point != nullptr && !point->host.stamped && add(*point, not_stamped);
 }
 
@@ -148,11 +164,7 @@ std::string TopicCheck::misspelt(const Endpoint& other) const {
   const Device* const device = device_of(other.topic);
   if (device == nullptr) return {};
   const std::string rest = other.topic.substr(device->space.size());
-  std::string_view end;
-  if (other.publishes)
-    end = write_end;
-  else if (!before(stamped_end, rest).empty())
-    end = stamped_end;
+  const std::string_view end = other.publishes ? write_end : stamped_end(rest);
   const std::string word = end.empty() ? rest : before(end, rest);
   if (word.empty()) return {};
   const auto is_stamped = [](const Point& point) { return point.host.stamped; };

@@ -163,7 +163,7 @@ std::unique_ptr<PointPublisher> Ros1Node::advertise_sample(const std::string& to
   return with_stamped_message<SampleMessages<Ros1Messages>>(point, [&](auto kind) {
     using Publisher = TypedPublisher<decltype(kind), TopicPublisher, SampleStamper>;
     return advertise_as(topic, point,
-                        std::make_unique<Publisher>(point, index, subscribers, SampleStamper(wall)));
+                        std::make_unique<Publisher>(point, index, subscribers, SampleStamper(wall)), true);
   });
 }
 
@@ -175,6 +175,7 @@ std::shared_ptr<void> Ros1Node::publish_points(const std::string& topic, const M
       return ros::message_traits::datatype<typename decltype(kind)::Message>();
     });
   }));
+  note_published<Message>(topic);
   return publisher;
 }
 

@@ -180,7 +180,7 @@ std::unique_ptr<PointPublisher> Ros2Node::advertise_sample(const std::string& to
     using Kind = decltype(kind);
     using Publisher = TypedPublisher<Kind, rcl::Publisher<typename Kind::Message>, SampleStamper>;
     return advertise_as(topic, point,
-                        std::make_unique<Publisher>(point, index, subscribers, SampleStamper(wall)));
+                        std::make_unique<Publisher>(point, index, subscribers, SampleStamper(wall)), true);
   });
 }
 
@@ -193,6 +193,7 @@ std::shared_ptr<void> Ros2Node::publish_points(const std::string& topic, const M
       return rosidl_generator_traits::name<typename decltype(kind)::Message>();
     });
   }));
+  note_published<Message>(topic);
   return publisher;
 }
 

@@ -18,7 +18,7 @@ using codec::Order;
 using modbus::Range;
 
 constexpr std::size_t fewest_characters = 6;
-constexpr std::size_t fewest_letters = 3;
+constexpr std::size_t fewest_different = 3;
 
 enum class Kind { upper, lower, digit, other };
 
@@ -47,14 +47,10 @@ std::size_t roughness(std::string_view text) {
 }
 
 bool is_like_a_text(std::string_view text) {
-  const auto letters = std::count_if(text.begin(), text.end(), [](char c) {
-    return kind_of(c) == Kind::upper || kind_of(c) == Kind::lower;
-  });
   const auto others =
       std::count_if(text.begin(), text.end(), [](char c) { return kind_of(c) == Kind::other && c != ' '; });
-  return text.size() >= fewest_characters && static_cast<std::size_t>(letters) >= fewest_letters &&
-         static_cast<std::size_t>(others) * 4 <= text.size() &&
-         std::set<char>(text.begin(), text.end()).size() >= fewest_letters;
+  return text.size() >= fewest_characters && static_cast<std::size_t>(others) * 4 <= text.size() &&
+         std::set<char>(text.begin(), text.end()).size() >= fewest_different;
 }
 
 /// Registers of printable characters.

@@ -19,8 +19,8 @@ struct FoundText {
   std::string other;  ///< what it reads as in the other order, if that is as likely
 };
 
-/// The texts of at least six characters, most of them letters and digits, by table and address. A text ends
-/// at a byte that is not printable.
+/// The texts of at least six characters, most of them letters, digits and blanks, by table and address. A
+/// text ends at a byte that is not printable.
 std::vector<FoundText> find_texts(const std::vector<TableFindings>& tables);
 
 /// A point as a map has it: "{address: 40, type: STRING, length: 12, order: AB}".

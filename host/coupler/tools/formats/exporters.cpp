@@ -83,6 +83,9 @@ void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings) 
   if (!map.limits.transaction_ids)
     warnings.add("the device does not repeat transaction ids, and other programs compare them",
                  "look for a gateway that repeats them, or an option of the other program");
+  if (!map.read_whole.empty())
+    warnings.add("other programs do not know which areas a device gives in one piece only ('read_whole')",
+                 "let them read each area in one request, as far as they can");
   for (const Point& point : map.points) {
     if (is_of_the_node(point))
       warnings.add(

@@ -166,6 +166,11 @@ class EntityWriter {
 
   Entities write() {
     for (const Point& point : map_.points) {
+      if (point.format.bits != 0) {
+        warnings_.add("numbers in some bits of a register are left out",
+                      "make template sensors of the whole register", point.name);
+        continue;
+      }
       if (point.count > 1)
         warnings_.add("arrays become several entities, whose names end in 0, 1, ...", "no action is needed",
                       point.name);
@@ -226,9 +231,6 @@ class EntityWriter {
         entities_.binary_sensors += head(point, element, read_range(point)) + input_type;
       return;
     }
-    if (point.format.bits != 0)
-      return warnings_.add("numbers in some bits of a register are left out",
-                           "make template sensors of the whole register", point.name);
     std::string& out = entities_.sensors;
     out += head(point, element, read_range(point)) + input_type + format_keys(point, indent);
     if (point.scale.gain != 1) out += fmt::format("{}scale: {}\n", indent, point.scale.gain);
