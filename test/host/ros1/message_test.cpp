@@ -122,6 +122,27 @@ TEST(Message, A_scaled_point_is_a_Float64_and_an_array_of_them) {
   EXPECT_TRUE(is_carried_by<std_msgs::Float64>(point));
 }
 
+TEST(Message, A_value_without_room_in_its_bits_is_refused_and_the_register_stays) {
+  std::vector<std::uint16_t> registers{0xA5A5};
+  Point byte = point_of(codec::Type::BYTE, 1);
+  byte.format.bit = 8;
+  byte.format.bits = 4;
+  using Bits = BitsMessage<std::uint8_t, coupler_driver::BoolArray>;
+  Bits::Message bits;
+  bits.data = {1, 1, 0, 0, 1, 0, 0, 0};
+  EXPECT_EQ(Bits::encode(bits, byte, registers.data()), "19 does not fit into 4 bits; send 0 to 15");
+  Point number = byte;
+  number.format.type = codec::Type::UINT;
+  std_msgs::UInt16 sixteen;
+  sixteen.data = 16;
+  using Number = NumberMessage<std::uint16_t, std_msgs::UInt16>;
+  EXPECT_EQ(Number::encode(sixteen, number, registers.data()), "16 does not fit into 4 bits; send 0 to 15");
+  EXPECT_EQ(registers[0], 0xA5A5);
+  bits.data[4] = 0;
+  EXPECT_EQ(Bits::encode(bits, byte, registers.data()), "");
+  EXPECT_EQ(registers[0], 0xA3A5);
+}
+
 TEST(Message, A_wrong_number_of_elements_is_refused_with_the_right_one) {
   std::vector<std::uint16_t> registers(8);
   std_msgs::Int16MultiArray numbers;
