@@ -38,7 +38,8 @@ TOPICS = {
     "online": "std_msgs/msg/Bool", "scheduled": "coupler_driver/msg/Scheduled", "status": "coupler_driver/msg/Status",
 }
 SERVICES = {"write": "coupler_driver/srv/Write", "read": "coupler_driver/srv/Read", "safe": "std_srvs/srv/Trigger",
-            "schedule": "coupler_driver/srv/Schedule", "lamp/set": "std_srvs/srv/SetBool"}
+            "schedule": "coupler_driver/srv/Schedule", "cancel_scheduled": "coupler_driver/srv/CancelScheduled",
+    "list_scheduled": "coupler_driver/srv/ListScheduled", "lamp/set": "std_srvs/srv/SetBool"}
 
 
 class GraphTest(testing.RosTest):
