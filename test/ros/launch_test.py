@@ -60,6 +60,21 @@ class Launch(testing.RosTest):
                     f"name:={self.name}", "address:=127.0.0.1", f"port:={peer.port}", "rate:=50", f"node:={self.name}_io")
         self.assertEqual(self.topic(f"/{self.name}/level", Int16).next(), 33)
 
+    def test_an_argument_that_is_empty_may_be_passed_on(self):
+        peer = self.peer(33)
+        path = process.write_map(f"""<launch>
+          <arg name="serial_port" default=""/>
+          <node pkg="coupler_driver" type="coupler_driver" name="{self.name}_io" args="_pin:=$(arg serial_port)">
+            <param name="map" value="{process.write_map(MAP.format(name=self.name))}"/>
+            <param name="address" value="127.0.0.1"/>
+            <param name="port" value="{peer.port}"/>
+            <param name="serial" value="$(arg serial_port)"/>
+            <param name="certificate" value=""/>
+          </node>
+        </launch>""", suffix=".launch")
+        self.launch(path)
+        self.assertEqual(self.topic(f"/{self.name}/level", Int16).next(), 33)
+
     def test_two_devices_are_launched_side_by_side(self):
         levels = {f"{self.name}_press": 11, f"{self.name}_belt": 22}
         for name, level in levels.items():

@@ -84,6 +84,21 @@ class Settings(SettingsTest):
             driver.wait_for("connected")
             self.assertEqual(driver.output.count("is not a setting"), 1)
 
+    def test_an_empty_parameter_says_nothing(self):
+        path = self.map()
+        empty = {name: "" for name in ("mapping", "maps", "name", "address", "port", "unit", "framing", "serial", "baud", "parity",
+                                       "stop_bits", "rs485", "certificate", "key", "ca", "tls_name", "pin", "rate", "timeout",
+                                       "verify", "poll", "record", "panel")}
+        rospy.set_param("/empty_io", {**empty, "map": path})
+        self.addCleanup(rospy.delete_param, "/empty_io")
+        self.assert_drives("__name:=empty_io")
+        rospy.set_param("/empty_io", {"map": path, "maps": []})
+        self.assert_drives("__name:=empty_io")
+        rospy.delete_param("/empty_io")
+        self.assert_drives("__name:=empty_io", f"_map:={path}", *(f"_{name}:=" for name in empty))
+        rospy.set_param("/empty_io", {"map": ""})
+        self.assert_ends(2, "no map; give one by --map MAP", "__name:=empty_io")
+
     def test_a_second_driver_of_the_same_name_is_noticed_by_both(self):
         with process.Driver(f"_map:={self.map()}") as one:
             one.wait_for("connected")

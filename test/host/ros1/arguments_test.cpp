@@ -97,8 +97,19 @@ TEST(Arguments, A_misspelt_one_is_told_with_the_nearest) {
 TEST(Arguments, A_value_out_of_range_is_a_wrong_call) {
   for (const char* argument :
        {"_port:=0", "_port:=65536", "_unit:=256", "_unit:=-1", "_unit:=1.5", "_rate:=0", "_rate:=nan",
-        "_rate:=", "_timeout:=0", "_timeout:=3s", "_verify:=yes", "_poll:=some", "_map:="})
+        "_timeout:=0", "_timeout:=3s", "_verify:=yes", "_poll:=some", "--map=", "--rate="})
     EXPECT_EQ(parse({argument}).exit_code, 2) << argument;
+}
+
+TEST(Arguments, An_empty_parameter_says_nothing) {
+  const Arguments result = parse({"_map:=a.yaml", "_rate:=", "_serial:=", "_maps:=", "_belt/port:="});
+  EXPECT_FALSE(result.exit_code) << result.text;
+  EXPECT_EQ(result.settings.map, "a.yaml");
+  EXPECT_FALSE(result.settings.rate);
+  EXPECT_FALSE(result.settings.serial);
+  EXPECT_FALSE(result.of_devices.at("belt").port);
+  EXPECT_THAT(parse({"_speed:="}).text, HasSubstr("there is no such setting"));
+  EXPECT_THAT(parse({"_belt/speed:="}).text, HasSubstr("there is no such setting"));
 }
 
 TEST(Arguments, Help_ends_with_0_and_has_an_example) {

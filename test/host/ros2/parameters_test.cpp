@@ -59,10 +59,11 @@ TEST(GivenParameters, What_YAML_has_made_unreadable_is_refused_with_quotes) {
 }
 
 TEST(GivenParameters, An_empty_text_says_nothing) {
-  const auto settings = settings_among({text("map", ""), text("port", "")}, "");
+  const auto settings = settings_among({text("map", ""), text("port", ""), {"maps", Kind::list, ""}}, "");
   ASSERT_TRUE(settings);
   EXPECT_FALSE(settings->map);
   EXPECT_FALSE(settings->port);
+  EXPECT_TRUE(settings->maps.empty());
 }
 
 TEST(GivenParameters, Those_of_one_device_stand_below_its_name) {

@@ -78,7 +78,7 @@ tl::expected<Settings, std::string> settings_among(
       if (name.empty()) continue;
       const auto text = text_of(key, std::string(name));
       if (!text) return tl::make_unexpected(fmt::format("parameter {}{}: {}", prefix, name, text.error()));
-      if (!*text) continue;
+      if (!*text || (*text)->empty()) continue;
       if (const auto done = key.set(settings, **text); !done)
         return tl::make_unexpected(fmt::format("parameter {}{}", prefix, done.error()));
     }

@@ -77,8 +77,8 @@ std::string unknown_parameter(std::string_view parameter, std::string_view name)
 tl::expected<void, std::string> set(Settings& settings, std::string_view key, const std::string& text);
 
 /// Returns the settings among the parameters that begin with `prefix`. `text_of` returns the text of the
-/// parameter of that name, nullopt if it is not given, or what is wrong with it. The error names the
-/// parameter, including its prefix.
+/// parameter of that name, nullopt if it is not given, or what is wrong with it. An empty text counts as not
+/// given, because launch files pass those. The error names the parameter, including its prefix.
 using ParameterText = tl::expected<std::optional<std::string>, std::string>;
 tl::expected<Settings, std::string> settings_among(
     std::string_view prefix,

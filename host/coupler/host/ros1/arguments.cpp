@@ -58,7 +58,8 @@ SortedArguments sort(Span<char* const> arguments) {
       if (slash == std::string_view::npos && !is_setting(name)) {
         result.unknown.push_back(argument);
       } else if (slash == std::string_view::npos) {
-        result.options.push_back(fmt::format("--{}={}", name, value));
+        // ROS makes a parameter of it, and an empty one counts as not given.
+        if (!value.empty()) result.options.push_back(fmt::format("--{}={}", name, value));
       } else {
         result.of_devices.push_back({name.substr(0, slash), name.substr(slash + 1), value});
         result.for_ros.pop_back();
@@ -71,6 +72,7 @@ SortedArguments sort(Span<char* const> arguments) {
 }
 
 tl::expected<void, std::string> set_of_device(Settings& settings, const DeviceArgument& given) {
+  if (given.value.empty() && is_setting(given.key)) return {};
   if (given.key == "map" || given.key == "maps")
     return tl::make_unexpected(fmt::format(
         "_{}/{}: a map is not a setting of one device; give the maps as in _maps:=[a.yaml,b.yaml]",

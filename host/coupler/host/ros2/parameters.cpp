@@ -74,7 +74,7 @@ bool is_meant_for_a_driver(const GivenParameters::Section& section) {
   });
 }
 
-/// Returns what is wrong if YAML has read a text as something else, or an empty text.
+/// Returns what is wrong if YAML has read a text as something else, or an empty text if nothing is.
 std::string wrong_kind(const SettingKey& key, const GivenParameter& one) {
   const bool is_text = key.kind == SettingKey::Kind::text && key.key != "verify" && key.key != "rs485";
   if (!is_text || (one.kind != Kind::boolean && one.kind != Kind::real)) return {};
@@ -202,7 +202,7 @@ tl::expected<Settings, std::string> settings_among(const std::vector<GivenParame
     const std::string full = fmt::format("{}{}", prefix, name);
     const auto last = std::find_if(parameters.rbegin(), parameters.rend(),
                                    [&](const GivenParameter& one) { return one.name == full; });
-    if (last == parameters.rend() || (last->text.empty() && last->kind == Kind::text)) return std::nullopt;
+    if (last == parameters.rend()) return std::nullopt;
     if (std::string wrong = wrong_kind(key, *last); !wrong.empty())
       return tl::make_unexpected(std::move(wrong));
     return last->text;
