@@ -60,6 +60,8 @@ std::string remedy_for_notation(std::string_view text) {
     return fmt::format(
         "write the zero-based address alone; the device's manual says whether {} counts from 0 or 1",
         shown(text));
+  if (!first.empty() && separator == ',' && second.empty())
+    return fmt::format("write {}: entries in lines of their own need no ','", first);
   if (first.empty() || !is_number(second)) return {};
   switch (separator) {
     case 'x':

@@ -11,6 +11,7 @@
 #include <yaml-cpp/parser.h>
 
 #include "coupler/map/loader/aliases.hpp"
+#include "coupler/map/loader/colon_slip.hpp"
 #include "coupler/map/loader/problems.hpp"
 #include "coupler/map/loader/source_text.hpp"
 #include "coupler/map/loader/syntax_error.hpp"
@@ -167,14 +168,33 @@ class TreeBuilder : public YAML::EventHandler {
 
   void check_colon(const Open& map) const {
     if (has_colon(text_, map.key_offset, map.key)) return;
+    auto slip = json_ ? std::nullopt : colon_slip(map.key);
+    if (!slip && !json_) slip = slip_before_bracket(map.key, map.key_offset);
+    if (slip) throw SyntaxError{map.key_at, slip->what, slip->remedy()};
+    const std::string_view in_brackets = "; put text that contains ',' in quotes";
     throw SyntaxError{map.key_at, fmt::format("':' is missing after {}", shown(map.key)),
-                      "write 'key: value', with a blank after the ':'"};
+                      fmt::format("write 'key: value', with a blank after the ':'{}",
+                                  map.block || json_ ? "" : in_brackets)};
+  }
+
+  /// 'lamp {address: 1}', of which yaml-cpp takes 'lamp {address' or 'lamp' for the key.
+  std::optional<ColonSlip> slip_before_bracket(std::string_view key, std::size_t at) const {
+    const std::string_view line = text_.substr(at, std::min(text_.find('\n', at), text_.size()) - at);
+    const std::size_t bracket = line.find_first_of("{[");
+    if (bracket > line.find_first_not_of(" \t", key.size()) &&
+        key.find_first_of("{[") == std::string_view::npos)
+      return std::nullopt;
+    return colon_slip(line);
   }
 
   void set_key(const YAML::Mark& mark, const std::string& key) {
     if (key == "<<" && anchors_ == nullptr)
       fail(mark, "merge keys ('<<') are not supported", "write the keys out");
     Open& map = stack_.back();
+    const bool is_bare = quoted_end(text_, offset(mark)) == offset(mark);
+    if (map.block && is_bare && key.find_first_of("{[") != std::string::npos)
+      if (const auto slip = slip_before_bracket(key, offset(mark)))
+        throw SyntaxError{position(mark), slip->what, slip->remedy()};
     map.has_key = true;
     map.key = key;
     map.key_at = position(mark);

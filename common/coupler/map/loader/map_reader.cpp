@@ -65,7 +65,15 @@ struct TableEntry {
 void find_points(const Entry& entry, Table table, std::vector<TableEntry>& found, const Context& context) {
   const std::string expected = fmt::format("'{}' holds points", to_string(table));
   if (!check_map(entry, expected, "write one 'name: ...' a point below it", context)) return;
-  for (const Entry& point : entry.children) found.push_back({&point, table});
+  const Entry* before = nullptr;
+  for (const Entry& point : entry.children) {
+    if (before != nullptr && before->kind == Entry::Kind::null && !context.served &&
+        find_key(point.key, section_of(table)) != nullptr)
+      context.problems.warning(point.key_at, fmt::format("this makes a point called '{}'", point.key),
+                               fmt::format("indent it further if it belongs to {}", shown(before->key)));
+    before = &point;
+    found.push_back({&point, table});
+  }
 }
 
 /// In the order of the file.

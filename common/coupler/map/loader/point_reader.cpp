@@ -24,6 +24,7 @@ void read_address(const Entry* entry, Addressing addressing, DraftPoint& draft, 
                                : "write the number");
     return;
   }
+  if (is_entry_without_colon(*entry, context)) return;
   const auto address = parse_address(entry->text, draft.point.table, addressing);
   if (entry->quoted && address) {
     context.problems.error(entry->at, fmt::format("the address must be a number, not {}", shown(*entry)),

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/map/loader/colon_slip.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/loader/synonyms.hpp"
 #include "coupler/map/nearest.hpp"
@@ -241,9 +242,26 @@ std::string shown(const Entry& value) {
   return (value.quoted ? "the text " : "") + shown(std::string_view(value.text));
 }
 
+bool is_entry_without_colon(const Entry& entry, const Context& context) {
+  if (entry.kind != Entry::Kind::scalar || entry.quoted || entry.at.line <= entry.key_at.line) return false;
+  auto slip = colon_slip(entry.text);
+  if (!slip) return false;
+  slip->value = slip->value.substr(0, slip->value.find(' '));  // YAML has joined the lines
+  context.problems.error(entry.at, slip->what, slip->remedy());
+  return true;
+}
+
 bool check_map(const Entry& entry, std::string_view expected, std::string_view remedy,
                const Context& context) {
   if (entry.kind == Entry::Kind::map || entry.kind == Entry::Kind::null) return true;
+  if (is_entry_without_colon(entry, context)) return false;
+  // A list in lines of its own.
+  if (!entry.children.empty() && entry.kind == Entry::Kind::list &&
+      entry.children[0].at.line > entry.at.line) {
+    context.problems.error(entry.children[0].at, fmt::format("{}, not {}", expected, shown(entry)),
+                           fmt::format("leave the '- ' out: {}", remedy));
+    return false;
+  }
   context.problems.error(entry.at, fmt::format("{}, not {}", expected, shown(entry)), std::string(remedy));
   return false;
 }

@@ -141,6 +141,9 @@ class Reader {
 /// The value as a message shows it: the text of a scalar, or "a list", "a map", "nothing".
 std::string shown(const Entry& value);
 
+/// The value is no map, but a text below its key, as 'valve:0' without the blank: that is a problem.
+bool is_entry_without_colon(const Entry& entry, const Context& context);
+
 /// The entry is a map or empty. Otherwise it is a problem, which begins with `expected`.
 bool check_map(const Entry& entry, std::string_view expected, std::string_view remedy,
                const Context& context);

@@ -3,7 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <vector>
 
+#include <fmt/format.h>
+
+#include "coupler/map/loader/line_error.hpp"
 #include "coupler/map/loader/source_text.hpp"
 
 namespace coupler::loader {
@@ -17,7 +22,7 @@ struct Explanation {
 
 constexpr std::array<Explanation, 13> explanations{{
     {"end of map flow not found", "',' or '}' is missing before this",
-     "separate entries with ',' and end them with '}'"},
+     "separate entries with ',' and end them with '}'; put text that contains ': ' in quotes"},
     {"end of sequence flow not found", "',' or ']' is missing before this",
      "separate values with ',' and end them with ']'"},
     {"end of map not found", "this does not belong to the entries above",
@@ -68,12 +73,19 @@ bool closes(std::string_view comment, char open) {
          std::count(comment.begin(), comment.end(), open);
 }
 
-/// Returns the place before `offset` at which a comment hides the only bracket that closes another one, so
-/// that the rest of the file makes no sense: '#' after a blank begins a comment inside brackets, too. Returns
-/// npos if there is none.
-std::size_t hiding_comment(std::string_view text, std::size_t offset) {
-  std::string open;  // brackets
-  std::size_t found = std::string_view::npos;
+/// What stands before a place of a text, of which a parser says that it makes no sense.
+struct Before {
+  std::vector<std::size_t> open;  ///< brackets
+  /// The comment that hides the only bracket that closes another one: '#' after a blank begins a comment
+  /// inside brackets, too.
+  std::size_t hiding_comment = std::string_view::npos;
+  std::size_t quote = 0;  ///< the last text in quotes
+  std::size_t quote_end = 0;
+};
+
+Before look_before(std::string_view text, std::size_t offset) {
+  Before found;
+  std::size_t& hiding = found.hiding_comment;
   std::size_t depth = 0;  // of the brackets there
   char previous = '\n';
   for (std::size_t i = 0; i < std::min(text.size(), offset); ++i) {
@@ -81,33 +93,91 @@ std::size_t hiding_comment(std::string_view text, std::size_t offset) {
     const std::string_view comment = comment_at(text, i);
     const std::size_t quoted = begins_value(previous) ? quoted_end(text, i) : i;
     if (quoted == std::string_view::npos) break;
-    if (found == std::string_view::npos && !open.empty() && closes(comment, open.back())) {
-      found = i;
-      depth = open.size();
+    if (hiding == std::string_view::npos && !found.open.empty() && closes(comment, text[found.open.back()])) {
+      hiding = i;
+      depth = found.open.size();
     }
-    if (c == '{' || c == '[') open += c;
-    if ((c == '}' || c == ']') && !open.empty()) open.pop_back();
-    if (open.size() < depth) found = std::string_view::npos;
+    if (quoted != i) found.quote = i, found.quote_end = quoted;
+    if (c == '{' || c == '[') found.open.push_back(i);
+    if ((c == '}' || c == ']') && !found.open.empty()) found.open.pop_back();
+    if (found.open.size() < depth) hiding = std::string_view::npos;
     if (c != ' ' && c != '\t') previous = c;
     i = std::max({i + 1, quoted, i + comment.size()}) - 1;
   }
   return found;
 }
 
+char closing(char open) { return open == '{' ? '}' : ']'; }
+
+SyntaxError never_closed(std::string_view text, std::size_t open) {
+  return {position_of(text, open), fmt::format("the '{}' is never closed", text[open]),
+          fmt::format("close it with '{}'", closing(text[open]))};
+}
+
+std::size_t indentation(std::string_view text, std::size_t offset) {
+  const std::size_t newline = text.substr(0, offset).rfind('\n');
+  const std::size_t start = newline == std::string_view::npos ? 0 : newline + 1;
+  return std::min(text.find_first_not_of(' ', start), text.size()) - start;
+}
+
+/// What is wrong before a place in brackets at which ',' or a closing bracket was awaited.
+std::optional<SyntaxError> explain_in_brackets(std::string_view text, std::size_t offset,
+                                               const Before& before) {
+  const int line = position_of(text, offset).line;
+  const bool ends_here = before.quote_end > 0 && position_of(text, before.quote_end).line == line;
+  if (ends_here && position_of(text, before.quote).line < line)
+    return SyntaxError{position_of(text, before.quote), "the quote is not closed in its line",
+                       "close it where the text ends"};
+  if (before.quote_end == offset && offset > 0)
+    return SyntaxError{position_of(text, offset), "text follows the closing quote", remedy_for_quotes};
+  if (before.open.empty()) return std::nullopt;
+  const std::size_t open = before.open.back();
+  if (position_of(text, open).line < line && indentation(text, offset) <= indentation(text, open))
+    return never_closed(text, open);
+  return std::nullopt;
+}
+
+/// The bracket at `offset` closes another one than the last that was opened.
+SyntaxError wrong_bracket(std::string_view text, std::size_t offset, std::size_t open) {
+  return {position_of(text, offset),
+          fmt::format("'{}' is missing before this: '{}' of line {} is open", closing(text[open]), text[open],
+                      position_of(text, open).line),
+          fmt::format("close it with '{}'", closing(text[open]))};
+}
+
+/// What the text shows better than the parser's message does.
+std::optional<SyntaxError> explain_by_text(std::string_view text, std::size_t offset,
+                                           std::string_view message, const Before& before) {
+  const auto says = [&](std::string_view begin) { return message.substr(0, begin.size()) == begin; };
+  if (says("end of map flow") || says("end of sequence flow"))
+    return explain_in_brackets(text, offset, before);
+  if (says("illegal flow end") && !before.open.empty() && text[offset] != closing(text[before.open.back()]))
+    return wrong_bracket(text, offset, before.open.back());
+  if (!before.open.empty()) return std::nullopt;
+  if (says("illegal map value")) return explain_lines(text, offset);
+  if (says("end of map not")) return explain_stranger(text, offset);
+  return std::nullopt;
+}
+
 }  // namespace
 
 SyntaxError explain(std::string_view text, std::size_t offset, std::string_view message) {
-  if (const std::size_t hash = hiding_comment(text, offset); hash != std::string_view::npos)
-    return {position_of(text, hash), "'#' begins a comment, which hides the closing bracket behind it",
+  const Before before = look_before(text, offset);
+  if (before.hiding_comment != std::string_view::npos)
+    return {position_of(text, before.hiding_comment),
+            "'#' begins a comment, which hides the closing bracket behind it",
             "close the bracket before the '#', or put text that contains ' #' in quotes"};
   const std::size_t last = text.find_last_not_of(" \t\r\n");
   if (last == std::string_view::npos || offset > last) {
+    if (!before.open.empty()) return never_closed(text, before.open.back());
     const Position end = position_of(text, last == std::string_view::npos ? 0 : last + 1);
     return {end, "the file ends too early", "close what is open: a '}', a ']' or a quote"};
   }
   const Position at = position_of(text, offset);
   if (!is_json(text) && indented_by_tab(text, offset))
     return {at, "the line is indented by a tab", "indent with blanks"};
+  if (!is_json(text))
+    if (auto better = explain_by_text(text, offset, message, before)) return *better;
   for (const Explanation& known : explanations)
     if (message.substr(0, known.message.size()) == known.message)
       return {at, std::string(known.what), std::string(known.remedy)};

@@ -45,7 +45,7 @@ UNSEEN = {name + ".yaml" for name in (
     # in a name that is right, but for ROS 1 only
     "name_in_ros1_only "
     # in the lock, or for want of one
-    "address_is_missing lock_does_not_know_it lock_of_a_merge lock_is_outgrown "
+    "address_is_missing indented_too_little lock_does_not_know_it lock_of_a_merge lock_is_outgrown "
     # in the text: gone when it is read as YAML
     "anchor tag tag_of_a_map tag_of_quoted_text key_is_null duplicate_key duplicate_table").split()} | {"json_surrogate_escape.json"}
 
