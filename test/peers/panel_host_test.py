@@ -146,8 +146,24 @@ def who_is_not_there_is_told(checks):
             checks.equal(f"{place}: why", bool(re.search(why, panel.text())), True)
 
 
-def ctrl_c_ends_the_search(checks):
-    device = foreign_server.Device({"coils": {0: True}})
+def ctrl_c_ends_the_search_and_shows_what_was_found(checks):
+    """Of a device that gives no block with a hole in it, all the rest would take minutes."""
+    device = foreign_server.Device({"coils": {0: True}, "input_registers": {0: 1, 4: 2}})
+    with foreign_server.serving(device) as port:
+        with Program(COUPLER, "panel", f"127.0.0.1:{port}/1", stdout=subprocess.PIPE) as panel:
+            peer.await_true("strict: it says how far it is", lambda: "looking at discrete_inputs" in panel.text(), checks)
+            panel.process.send_signal(signal.SIGINT)
+            checks.equal("strict: a page", panel.process.stdout.readline().startswith("http://"), True)
+            checks.equal("strict: it says so", bool(re.search("not all was looked at: .* so far; to look again and keep it: "
+                                                              f"coupler probe 127.0.0.1:{port}/1 --out FILE", panel.text())), True)
+            checks.equal("strict: exit status", panel.end(signal.SIGINT), 0)
+        with Program(COUPLER, "panel", f"127.0.0.1:{port}/1", stdout=subprocess.PIPE) as panel:
+            peer.await_true("SIGTERM: it looks", lambda: "looking at discrete_inputs" in panel.text(), checks)
+            checks.equal("SIGTERM: exit status", panel.end(signal.SIGTERM), 3)
+
+
+def ctrl_c_ends_a_search_that_has_found_nothing(checks):
+    device = foreign_server.Device({"holding_registers": {9000: 1}})
     with foreign_server.serving(device) as port:
         with Program(COUPLER, "panel", f"127.0.0.1:{port}/1", stdout=subprocess.PIPE) as panel:
             peer.await_true("Ctrl-C: it looks", lambda: len(device.functions) >= 20, checks)
@@ -183,7 +199,8 @@ def main():
                     pool.submit(a_wago_is_recorded, folder, checks),
                     pool.submit(a_node_gives_its_map, node, map_file, checks),
                     pool.submit(who_is_not_there_is_told, checks),
-                    pool.submit(ctrl_c_ends_the_search, checks),
+                    pool.submit(ctrl_c_ends_the_search_and_shows_what_was_found, checks),
+                    pool.submit(ctrl_c_ends_a_search_that_has_found_nothing, checks),
                     pool.submit(a_file_is_a_file, folder, map_file, checks)]:
                 part.result()
     checks.done("coupler panel and record find out the map of a node, a WAGO and a stranger, and write nothing")

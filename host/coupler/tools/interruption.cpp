@@ -35,6 +35,7 @@ Interruption::Interruption(std::function<void()> call) {
     int signal = 0;
     sigwait(&signals, &signal);
     if (unwanted_) return;
+    signal_ = signal;
     if (signal == SIGQUIT) core_is_wanted = true;
     call();
     const auto called = std::chrono::steady_clock::now();

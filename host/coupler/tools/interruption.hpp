@@ -18,8 +18,12 @@ class Interruption {
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
+  /// The first signal; 0 if none has come.
+  int signal() const { return signal_; }
+
  private:
   std::atomic<bool> unwanted_{false};
+  std::atomic<int> signal_{0};
   sigset_t before_{};
   std::thread thread_;
 };

@@ -37,6 +37,7 @@ struct ProbeCall {
   std::vector<Serial> lines;  ///< to try until a unit answers; one without a device: it is reached by TCP
   scan::Task task;
   std::vector<scan::KnownValue> known;
+  int ended_by = 0;  ///< the signal that has ended the scan; 0 if none has
 };
 
 /// The connection is a view of `address`, which is the host as node_argument() completes it.

@@ -15,7 +15,7 @@
 namespace coupler::tools {
 namespace {
 
-scan::Findings look(const ProbeCall& call, ProgressBar& progress) {
+scan::Findings look(ProbeCall& call, ProgressBar& progress) {
   ModbusClient client(call.connection);
   host::SteadyClock clock;
   const Interruption interruption([&] {
@@ -23,7 +23,9 @@ scan::Findings look(const ProbeCall& call, ProgressBar& progress) {
     clock.stop();
     client.interrupt();
   });
-  return scan::scan(call.task, client, clock, progress);
+  scan::Findings findings = scan::scan(call.task, client, clock, progress);
+  call.ended_by = interruption.signal();
+  return findings;
 }
 
 }  // namespace

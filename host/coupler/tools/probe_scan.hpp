@@ -10,7 +10,7 @@ namespace coupler::tools {
 
 /// Scans with each of `call.lines` in turn, until a unit answers. call.connection then has the settings with
 /// which it answered. Shows the progress on standard error. An ending signal (see Interruption) ends the
-/// scan.
+/// scan, and is call.ended_by.
 scan::Findings look_at_each_line(ProbeCall& call);
 
 /// Why a device cannot be reached, and what to do.

@@ -2,6 +2,7 @@
 #include "coupler/tools/unknown_device.hpp"
 
 #include <chrono>
+#include <csignal>
 #include <string>
 #include <thread>
 #include <utility>
@@ -76,7 +77,9 @@ tl::expected<FoundMap, Failure> map_by_a_scan(std::string_view command, const st
   call.task.ends_when_known = true;
   const scan::Findings findings = look(call);
   if (findings.broke_off) return tl::make_unexpected(why_unreachable(*findings.broke_off, call.connection));
-  if (!findings.is_complete)
+  // Ctrl-C ends the search, and any other signal the program.
+  const bool shows_enough = call.ended_by == SIGINT && findings.unit && !shows_nothing(findings);
+  if (!findings.is_complete && !shows_enough)
     return fail(failed, "it was ended before there was a map", "give a map, or let it look to the end");
   if (!findings.unit) return tl::make_unexpected(why_no_unit(call));
   call.connection.unit = *findings.unit;
@@ -91,7 +94,11 @@ tl::expected<FoundMap, Failure> map_by_a_scan(std::string_view command, const st
   if (shows_nothing(findings))
     return fail(failed, "the device shows nothing, so there is no map",
                 fmt::format("`coupler probe {}` says where else to look; or give a map", as_argument(place)));
-  say(command, fmt::format("{} is unknown: its points are what can be read there; {}", device, to_file));
+  say(command, findings.is_complete
+                   ? fmt::format("{} is unknown: its points are what can be read there; {}", device, to_file)
+                   : fmt::format("{} is unknown, and not all was looked at: its points are what was found so "
+                                 "far; to look again and keep it: coupler probe {} --out FILE",
+                                 device, as_argument(place)));
   return load(scan::draft_map(findings, call.connection, {}));
 }
 
@@ -113,7 +120,11 @@ tl::expected<FoundMap, Failure> map_of_unknown_device(std::string_view command, 
     if (!served) return tl::make_unexpected(std::move(served.error()));
     if (*served != nullptr) return found_node(command, std::move(*served), connection);
   }
-  say(command, fmt::format("{}: finding out what it answers to; Ctrl-C ends that", place_text(connection)));
+  say(command,
+      fmt::format(
+          "{}: finding out what it answers to, which may take minutes; Ctrl-C ends that, and what was "
+          "found by then is used",
+          place_text(connection)));
   return map_by_a_scan(command, place, *call);
 }
 
