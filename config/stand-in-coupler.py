@@ -5,8 +5,25 @@
     config/stand-in-coupler.py &
     coupler_driver --map config/foreign-coupler.yaml --address 127.0.0.1 --port 5020
 """
+import argparse
+import os
+import socket
+import sys
+
 from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
 from pymodbus.server import StartTcpServer
+
+ADDRESS = "127.0.0.1"
+arguments = argparse.ArgumentParser(description="A Modbus/TCP server that stands in for a commercial coupler.")
+arguments.add_argument("port", metavar="PORT", nargs="?", type=int, default=5020, help="where it listens (default: 5020)")
+port = arguments.parse_args().port
+if not 0 < port < 65536:
+    arguments.error(f"{port} is no port; give one from 1 to 65535")
+try:
+    socket.create_server((ADDRESS, port)).close()  # pymodbus would wait and say nothing
+except OSError as error:
+    sys.exit(f"stand-in-coupler: cannot listen on {ADDRESS} port {port}: {os.strerror(error.errno)}; end the program that "
+             f"listens there, or give another port: config/stand-in-coupler.py {5021 if port == 5020 else 5020}")
 
 inputs = [False] * 16
 inputs[0] = inputs[1] = True                    # clamped, door_closed
@@ -24,5 +41,5 @@ StartTcpServer(
         ),
         single=True,
     ),
-    address=("127.0.0.1", 5020),
+    address=(ADDRESS, port),
 )
