@@ -93,7 +93,8 @@ class Services(ServicesTest):
     def test_what_cannot_be_written_is_told_with_what_can(self):
         for point, value, expected in (("nothing", "1", f"there is no point 'nothing' in the map of {self.name}; the map has their names"),
                                        ("presure", "1", f"there is no point 'presure' in the map of {self.name}; did you mean 'pressure'?"),
-                                       ("pressure", "1", "pressure cannot be written"),
+                                       ("pressure", "1", "pressure cannot be written: it is an input"),
+                                       ("lamp", "TRUE", "'TRUE' is neither true nor false; send true or false (or on, off, 1, 0)"),
                                        ("level", "70000", "-32768 to 32767"), ("level", "full", "is not a number"),
                                        ("speeds", "[1]", "give 3")):
             result = self.write(point, value)

@@ -38,7 +38,9 @@ TEST(ValueText, A_coil_is_true_or_false_in_the_usual_words) {
   for (const char* yes : {"true", "True", "on", "1", " true "})
     EXPECT_EQ(parsed(yes, coil), Registers{1}) << yes;
   for (const char* no : {"false", "off", "0"}) EXPECT_EQ(parsed(no, coil), Registers{0}) << no;
-  EXPECT_THAT(error_of("2", coil), HasSubstr("neither true nor false"));
+  for (const char* other : {"2", "TRUE", "yes", ""})
+    EXPECT_THAT(error_of(other, coil),
+                HasSubstr("neither true nor false; send true or false (or on, off, 1, 0)"));
 }
 
 TEST(ValueText, A_named_value_is_written_and_read_by_its_name) {
@@ -54,6 +56,19 @@ TEST(ValueText, A_named_value_is_written_and_read_by_its_name) {
   const std::uint16_t unnamed = 3;
   EXPECT_EQ(format_value(&named, mode), "auto");
   EXPECT_EQ(format_value(&unnamed, mode), "3");
+}
+
+TEST(ValueText, What_is_refused_is_told_with_what_may_be_sent) {
+  Point level = point_of(codec::Type::INT);
+  EXPECT_EQ(error_of("full", level), "'full' is not a number; send one, as 4711, 0x2F or -1.5");
+  level.bounds.min = 0;
+  level.bounds.max = 10;
+  EXPECT_EQ(error_of("full", level), "'full' is not a number; send 0 to 10");
+  Point label = point_of(codec::Type::STRING);
+  label.format.length = 2;
+  EXPECT_THAT(error_of("left", label), HasSubstr("give at most 2 bytes"));
+  label.format.encoding = codec::Encoding::ascii;
+  EXPECT_THAT(error_of("°", label), HasSubstr("leave out what it does not have"));
 }
 
 TEST(ValueText, A_bit_of_a_register_leaves_the_others_zero) {
@@ -124,7 +139,7 @@ TEST(ValueText, A_text_is_taken_as_it_stands) {
   Point text = point_of(codec::Type::STRING);
   text.format.length = 4;
   EXPECT_EQ(parsed(" a,b", text), (Registers{0x2061, 0x2C62}));
-  EXPECT_THAT(error_of("abcde", text), HasSubstr("longer than 4 bytes"));
+  EXPECT_THAT(error_of("abcde", text), HasSubstr("give at most 4 bytes"));
 }
 
 TEST(ValueText, Bit_strings_are_shown_in_hexadecimal_with_all_digits) {

@@ -24,7 +24,11 @@ tl::expected<const Point*, std::string> point_named(const Map& map, std::string_
 tl::expected<Write, std::string> write_named(const Map& map, std::string_view name, std::string_view text) {
   const auto point = point_named(map, name);
   if (!point) return tl::unexpected(point.error());
-  if (!is_writable(**point)) return tl::unexpected(fmt::format("{} cannot be written", name));
+  if (!is_writable(**point))
+    return tl::unexpected(fmt::format("{} cannot be written: {}", name,
+                                      is_writable((*point)->table)
+                                          ? "the map says 'access: read'"
+                                          : "it is an input; coils and holding registers can be"));
   std::vector<std::uint16_t> value(range(**point).count());
   if (const auto parsed = parse_value(text, **point, value.data()); !parsed)
     return tl::unexpected(parsed.error());

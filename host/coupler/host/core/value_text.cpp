@@ -61,14 +61,22 @@ double as_double(const Value& number) {
   return std::get<double>(number);
 }
 
+/// `wrong` is empty if nothing is.
+Parsed done_or(std::string wrong) {
+  if (wrong.empty()) return {};
+  return tl::make_unexpected(std::move(wrong));
+}
+
 Parsed parse_element(std::string_view text, const Point& point, std::uint16_t* registers) {
   const codec::Format& format = point.format;
-  if (format.type == Type::STRING) return codec::encode(std::string(text), format, registers);
+  if (format.type == Type::STRING) return done_or(encode_string(text, point, registers));
   text = trimmed(text);
   registers[0] = 0;
   if (format.type == Type::BOOL) {
     const auto on = parse_bool(text);
-    if (!on) return tl::make_unexpected(excerpt(text) + " is neither true nor false");
+    if (!on)
+      return tl::make_unexpected(excerpt(text) +
+                                 " is neither true nor false; send true or false (or on, off, 1, 0)");
     if (!holds_bits(point.table)) return codec::encode(*on, format, registers);
     registers[0] = *on ? 1 : 0;
     return {};
@@ -79,12 +87,11 @@ Parsed parse_element(std::string_view text, const Point& point, std::uint16_t* r
   if (!number && !point.values.empty())
     return tl::make_unexpected(
         fmt::format("{} is not one of its values; send {}", excerpt(text), allowed_text(point)));
-  if (!number) return tl::make_unexpected(excerpt(text) + " is not a number");
-  if (point.scale.present()) {
-    const std::string wrong = encode_scaled(as_double(*number), point, registers);
-    if (!wrong.empty()) return tl::make_unexpected(wrong);
-    return {};
-  }
+  if (!number)
+    return tl::make_unexpected(
+        fmt::format("{} is not a number; send {}", excerpt(text),
+                    limits_values(point) ? allowed_text(point) : "one, as 4711, 0x2F or -1.5"));
+  if (point.scale.present()) return done_or(encode_scaled(as_double(*number), point, registers));
   auto encoded = codec::encode(*number, format, registers);
   if (!encoded && limits_values(point))  // the range of the type is not what may be sent
     return tl::make_unexpected(fmt::format("{} is not allowed; send {}", excerpt(text), allowed_text(point)));
