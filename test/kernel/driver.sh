@@ -23,7 +23,7 @@ start core ../support/ros-master 11311
 check "a ROS master answers" wait_until says core http://
 recording=$check_folder/plant.jsonl
 # A busy machine's node is late, not lost.
-start driver "$bin/coupler_driver" _address:=127.0.0.1 _port:=1502 _timeout:="$patience" _record:="$recording"
+start driver "$bin/coupler_driver" _address:=127.0.0.1 _port:=1502 _timeout:="${patience}s" _record:="$recording"
 check "the driver connects, with the node's own map" wait_until says driver 'connected'
 
 echo "# pulling a line shows on its topic"

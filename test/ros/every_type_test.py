@@ -28,7 +28,7 @@ class EveryType(testing.RosTest):
         for index, point in enumerate(self.points):
             point.store(self.device, value_of(point, index, 0))
         path = process.write_map(yaml.safe_dump(document))
-        self.driver(f"_map:={path}", *self.device.way, f"_timeout:={NO_TIMEOUT}").wait_for("connected")
+        self.driver(f"_map:={path}", *self.device.way, f"_timeout:={NO_TIMEOUT}s").wait_for("connected")
 
     def is_read(self, bytes_reversed=False, words_reversed=False):
         """Each point, as a topic."""

@@ -60,7 +60,7 @@ class OriginMaps(unittest.TestCase):
         for path in maps():
             with self.subTest(path.name), Peer() as peer:
                 with process.Driver("--mapping", path, "_address:=127.0.0.1", f"_port:={peer.port}",
-                                    f"_timeout:={NO_TIMEOUT}") as driver:
+                                    f"_timeout:={NO_TIMEOUT}s") as driver:
                     driver.wait_for("connected")
                     self.check(read(path), peer)
 

@@ -85,7 +85,7 @@ class Vectors(testing.RosTest):
         name = name or self.name
         points = [Tested(point, i, "/" + name) for i, point in enumerate(vectors["points"])]
         with self.peer() as peer:
-            arguments = (*program, f"_name:={name}", *peer.way, f"_timeout:={NO_TIMEOUT}")
+            arguments = (*program, f"_name:={name}", *peer.way, f"_timeout:={NO_TIMEOUT}s")
             with process.Process(*process.driver_arguments(arguments)) as driver:
                 driver.wait_for("connected")
                 self.check_reading(peer, points)

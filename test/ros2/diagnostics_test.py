@@ -96,7 +96,7 @@ class Waiting(DiagnosticsTest):
     def test_it_is_said_while_a_device_that_accepts_does_not_answer(self):
         with socket.create_server(("127.0.0.1", 0)) as silent:
             port = silent.getsockname()[1]
-            self.driver("--address", "127.0.0.1", "--port", port, "--timeout", NO_TIMEOUT)
+            self.driver("--address", "127.0.0.1", "--port", port, "--timeout", f"{NO_TIMEOUT}s")
             for _ in range(3):
                 self.wait_for_warning(port)
 

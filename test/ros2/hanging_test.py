@@ -60,7 +60,7 @@ class NeverAnswered(HangingTest):
                          "hung_driver: hung connection")
 
     def test_while_its_map_is_awaited_too(self):
-        driver = self.driver("--address", "127.0.0.1", "--port", self.port, "--timeout", 3600)
+        driver = self.driver("--address", "127.0.0.1", "--port", self.port, "--timeout", "3600s")
         self.asked()
         self.node_answers(f"/coupler_127_0_0_1_{self.port}_driver")
         self.assertEqual(driver.interrupt(), 0, driver.output)

@@ -75,7 +75,7 @@ class Declared(ParametersTest):
             self.assertLess(one.floating_point_range[0].from_value, one.floating_point_range[0].to_value)
 
     def test_values_are_those_that_it_drives_with_wherever_they_come_from(self):
-        self.start("--rate", "50", "--ros-args", "-p", "verify:=off", "-p", "timeout:=70")
+        self.start("--rate", "50", "--ros-args", "-p", "verify:=off", "-p", "timeout:=70s")
         self.assertEqual(self.parameters.get("map", "name", "address", "port", "unit"),
                          [self.map, "given", "127.0.0.1", self.peer.port, 1])
         self.assertEqual(self.parameters.get("rate", "timeout", "verify", "poll", "use_sim_time"),

@@ -17,7 +17,7 @@ sim_create plant 8
 plant_node "$here/plant.yaml"
 start core "$here/../../support/ros-master" 11311
 check "a ROS master answers" wait_until says core http://
-start driver "$bin/coupler_driver" _map:="$here/plant.yaml" _timeout:="$patience" # a busy machine's node is late
+start driver "$bin/coupler_driver" _map:="$here/plant.yaml" _timeout:="${patience}s" # a busy machine's node is late
 check "the driver connects" wait_until says driver 'connected'
 chip=/dev/$(sim_chip plant)
 start publisher "$bench/coupler_bench_bare" publisher 1503

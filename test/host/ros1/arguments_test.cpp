@@ -97,7 +97,7 @@ TEST(Arguments, A_misspelt_one_is_told_with_the_nearest) {
 TEST(Arguments, A_value_out_of_range_is_a_wrong_call) {
   for (const char* argument :
        {"_port:=0", "_port:=65536", "_unit:=256", "_unit:=-1", "_unit:=1.5", "_rate:=0", "_rate:=nan",
-        "_timeout:=0", "_timeout:=3s", "_verify:=yes", "_poll:=some", "--map=", "--rate="})
+        "_timeout:=0", "_timeout:=3h", "_verify:=yes", "_poll:=some", "--map=", "--rate="})
     EXPECT_EQ(parse({argument}).exit_code, 2) << argument;
 }
 
@@ -110,6 +110,16 @@ TEST(Arguments, An_empty_parameter_says_nothing) {
   EXPECT_FALSE(result.of_devices.at("belt").port);
   EXPECT_THAT(parse({"_speed:="}).text, HasSubstr("there is no such setting"));
   EXPECT_THAT(parse({"_belt/speed:="}).text, HasSubstr("there is no such setting"));
+}
+
+TEST(Arguments, A_timeout_is_seconds_or_has_its_unit) {
+  EXPECT_EQ(parse({"--timeout=60"}).settings.timeout, std::chrono::seconds(60));
+  EXPECT_EQ(parse({"_timeout:=100ms"}).settings.timeout, std::chrono::milliseconds(100));
+  EXPECT_EQ(parse({"--timeout", "90s"}).settings.timeout, std::chrono::seconds(90));
+  EXPECT_EQ(parse({"--timeout=100"}).text,
+            "timeout: '100' is not a number of seconds up to 60; write 100ms or 100s\n");
+  EXPECT_EQ(parse({"--timeout=3h"}).text,
+            "timeout: '3h' is not a duration from 0.001 to 3600 s, as 0.5, 500ms or 3s\n");
 }
 
 TEST(Arguments, Help_ends_with_0_and_has_an_example) {

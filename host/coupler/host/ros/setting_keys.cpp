@@ -12,7 +12,9 @@
 
 #include "coupler/base/enumeration.hpp"
 #include "coupler/host/ros/settings.hpp"
+#include "coupler/map/loader/keys.hpp"
 #include "coupler/map/loader/names.hpp"
+#include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/network.hpp"
 #include "coupler/map/node_address.hpp"
 
@@ -33,7 +35,7 @@ tl::unexpected<std::string> wrong(const SettingKey& key, const std::string& text
 std::string to_text(const std::string& value) { return value; }
 std::string to_text(bool value) { return value ? "true" : "false"; }
 std::string to_text(milliseconds value) {
-  return fmt::to_string(std::chrono::duration<double>(value).count());
+  return fmt::format("{}s", std::chrono::duration<double>(value).count());
 }
 template <class T>
 std::string to_text(T value) {
@@ -115,8 +117,19 @@ tl::expected<T, std::string> number(const SettingKey& key, const std::string& te
   return static_cast<T>(*value);
 }
 
-tl::expected<milliseconds, std::string> seconds(const SettingKey& key, const std::string& text) {
-  return number<double>(key, text).map([](double value) { return milliseconds(std::lround(value * 1000)); });
+/// Seconds, or a duration with its unit, as a map has it. Large bare numbers were meant as milliseconds.
+tl::expected<milliseconds, std::string> duration(const SettingKey& key, const std::string& text) {
+  const auto bare = number_in(text);
+  if (bare && *bare > loader::most_bare_seconds)
+    return wrong(key, text,
+                 fmt::format("a number of seconds up to {}; write {}ms or {}s", loader::most_bare_seconds,
+                             text, text));
+  const auto value = loader::parse_duration(bare ? text + "s" : text);
+  const double seconds = value ? std::chrono::duration<double>(*value).count() : -1;
+  if (seconds < key.min || seconds > key.max)
+    return wrong(key, text,
+                 fmt::format("a duration from {} to {}{}, as 0.5, 500ms or 3s", key.min, key.max, key.unit));
+  return milliseconds(std::lround(seconds * 1000));
 }
 
 tl::expected<std::uint32_t, std::string> rate_of_line(const SettingKey& key, const std::string& text) {
@@ -273,8 +286,9 @@ const std::vector<SettingKey>& setting_keys() {
           real_key("rate", 0.001, 10000, " Hz", "polling rate in Hz"), &Settings::rate, number<double>,
           [](Map & map) -> auto& { return map.polling.rate; }),
       row<milliseconds>(
-          real_key("timeout", 0.001, 3600, " s", "longest wait for a reply, in seconds"), &Settings::timeout,
-          seconds, [](Map & map) -> auto& { return map.connection.timeout; }),
+          real_key("timeout", 0.001, 3600, " s",
+                   "longest wait for a reply: seconds, up to 60, or with a unit, as 500ms or 90s"),
+          &Settings::timeout, duration, [](Map & map) -> auto& { return map.connection.timeout; }),
       row<Verify>(
           text_key(
               "verify",
