@@ -9,6 +9,7 @@
 #include "coupler/codec/text.hpp"
 #include "coupler/host/ros/device_panel.hpp"
 #include "coupler/host/ros/program.hpp"
+#include "coupler/host/ros/start_progress.hpp"
 #include "coupler/host/ros/status.hpp"
 #include "coupler/map/loader/load.hpp"
 
@@ -21,9 +22,10 @@ std::string topic(const Map& map, std::string_view point) { return fmt::format("
 std::vector<std::unique_ptr<PointPublisher>> advertise_all(Node& node, const Map& map,
                                                            SubscriberCounts& subscribers) {
   std::vector<std::unique_ptr<PointPublisher>> result(map.points.size());
-  for (std::uint32_t i = 0; i < map.points.size() && !Shutdown::requested; ++i)
+  for_each_point(node, map, "have their topics", [&](std::uint32_t i) {
     if (is_readable(map.points[i]))
       result[i] = node.advertise(topic(map, map.points[i].name), map.points[i], i, subscribers);
+  });
   return result;
 }
 
@@ -32,10 +34,11 @@ std::vector<std::unique_ptr<PointPublisher>> advertise_stamped(Node& node, const
                                                                SubscriberCounts& subscribers,
                                                                const WallTime& wall) {
   std::vector<std::unique_ptr<PointPublisher>> result(map.points.size());
-  for (std::uint32_t i = 0; i < map.points.size() && !Shutdown::requested; ++i)
+  for_each_point(node, map, "have their topics with stamps", [&](std::uint32_t i) {
     if (map.points[i].host.stamped)
       result[i] = node.advertise_stamped(topic(map, map.points[i].name) + "/stamped", map.points[i], i,
                                          subscribers, wall);
+  });
   return result;
 }
 
@@ -102,10 +105,11 @@ void DeviceDriver::begin(const Followed& followed) {
   if (map_.poll == Poll::subscribed)
     for (std::uint32_t i = 0; i < map_.points.size(); ++i) thread_.want(i, false);
   thread_.start();
-  for (std::uint32_t i = 0; i < map_.points.size() && !Shutdown::requested; ++i)
+  for_each_point(node_, map_, "have their topics for writes", [this](std::uint32_t i) {
     if (is_writable(map_.points[i]))
       subscriptions_.push_back(
           node_.subscribe(topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
+  });
   services_.start(
       node_, {writes_, [this] { return driven().reset_watchdog(); }, [this] { return driven().make_safe(); },
               [this](const ScheduledWrite& what) { return driven().schedule(what); },

@@ -13,6 +13,7 @@
 #include "coupler/host/core/named_write.hpp"
 #include "coupler/host/core/value_text.hpp"
 #include "coupler/host/ros/program.hpp"
+#include "coupler/host/ros/start_progress.hpp"
 #include "coupler/map/printable.hpp"
 #include "coupler/plan/planner.hpp"
 
@@ -67,13 +68,14 @@ void DeviceServices::start(Node& node, Device device) {
     timed_calls_->offer_list(name("list_scheduled"), [this] { return answer_list(); });
     timed_calls_->start();
   }
-  for (std::uint32_t i = 0; i < map_.points.size() && !Shutdown::requested; ++i)
+  urgent_calls_->start();
+  read_calls_->start();
+  for_each_point(node, map_, "have their services", [&](std::uint32_t i) {
     if (is_writable(map_.points[i]) && is_bit(map_.points[i]))
       calls_->offer_set(name(fmt::format("{}/set", map_.points[i].name)),
                         [this, i](bool on) { return answer_set(i, on); });
+  });
   calls_->start();
-  urgent_calls_->start();
-  read_calls_->start();
 }
 
 void DeviceServices::stop() {
