@@ -42,4 +42,5 @@ StartTcpServer(
         single=True,
     ),
     address=(ADDRESS, port),
+    allow_reuse_address=True,  # or it would wait for a minute after it was ended while a client was connected
 )

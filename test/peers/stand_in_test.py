@@ -15,7 +15,8 @@ CONFIG = pathlib.Path(__file__).parents[2] / "config"
 
 
 def stand_in(*arguments):
-    return subprocess.Popen([sys.executable, CONFIG / "stand-in-coupler.py", *map(str, arguments)], stderr=subprocess.PIPE, text=True)
+    command = [sys.executable, CONFIG / "stand-in-coupler.py", *map(str, arguments)]
+    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
 
 
 def said_by(*arguments):

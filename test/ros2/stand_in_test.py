@@ -63,10 +63,10 @@ class StandIn(testing.RosTest):
         self.assertIn("'bag record' is not in this stand-in for ros2", self.ros2("bag", "record", code=1))
         self.assertIn("the following arguments are required: TOPIC", self.ros2("topic", "echo", code=1))
         self.assertIn("unrecognized arguments: --csv", self.ros2("topic", "echo", "/a", "--csv", code=1))
-        self.assertIn("there is no type 'std_msgs/msg/Boolean'", self.ros2("topic", "pub", "--once", "/a", "std_msgs/msg/Boolean", code=1))
-        self.assertIn("the fields are {'data': 'boolean'}",
-                      self.ros2("topic", "pub", "--once", "/a", "std_msgs/msg/Bool", "date: true", code=1))
-        self.assertIn("write them as in 'data: true'", self.ros2("topic", "pub", "--once", "/a", "std_msgs/msg/Bool", "true", code=1))
+        for words, said in ((["std_msgs/msg/Boolean"], "there is no type 'std_msgs/msg/Boolean'"),
+                            (["std_msgs/msg/Bool", "date: true"], "the fields are {'data': 'boolean'}"),
+                            (["std_msgs/msg/Bool", "true"], "write them as in 'data: true'")):
+            self.assertIn(said, self.ros2("topic", "pub", "--once", "/a", *words, code=1))
 
 
 if __name__ == "__main__":

@@ -40,7 +40,8 @@ TEST_F(NamedWrite, A_point_that_is_not_there_is_told_with_the_one_that_was_meant
 }
 
 TEST_F(NamedWrite, What_cannot_be_written_says_why) {
-  EXPECT_EQ(error_of("door", "true"), "door cannot be written: it is an input; coils and holding registers can be");
+  EXPECT_EQ(error_of("door", "true"),
+            "door cannot be written: it is an input; coils and holding registers can be");
   EXPECT_THAT(error_of("level", "full"), HasSubstr("is not a number"));
 }
 

@@ -97,7 +97,8 @@ std::optional<SyntaxError> explain_lines(std::string_view text, std::size_t offs
   const Line here = line_at(text, offset);
   if (const auto slip = colon_slip(here.text))
     return SyntaxError{position_of(text, here.begin), slip->what, slip->remedy()};
-  if (here.begin + entry_colon(here.text) < offset)
+  if (const std::size_t colon = entry_colon(here.text);
+      colon != std::string_view::npos && here.begin + colon < offset)
     return SyntaxError{position_of(text, offset), "a second ':' stands in this line",
                        "write one 'key: value' a line; put text that contains ': ' in quotes"};
   if (const auto line = first_without_colon(text, here)) return missing_colon(text, *line);

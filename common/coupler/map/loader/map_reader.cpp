@@ -150,6 +150,7 @@ std::optional<MapLayout> read_map(const Entry& file, const MapSource& source, Pl
                                   Problems& problems, OwnedMap& map) {
   const Context context{problems, map, source.served, has_only_inherited_keys(file),
                         map.keep(std::string(source.folder))};
+  if (is_entry_without_colon(file, context)) return std::nullopt;
   if (file.kind != Entry::Kind::map) {
     problems.error(file.at, fmt::format("a map consists of keys, but this is {}", shown(file)),
                    "begin with 'name: NAME'");
