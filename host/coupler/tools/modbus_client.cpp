@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include <fmt/format.h>
+
 #include "coupler/host/core/identity_check.hpp"
 #include "coupler/modbus/device_identification.hpp"
 
@@ -10,6 +12,11 @@ namespace coupler::tools {
 
 std::string reach_remedy(const Connection& where, const host::Error& error, std::string_view over_tcp) {
   if (where.is_rtu() && std::holds_alternative<host::Timeout>(error)) return host::line_remedy(where);
+  if (std::holds_alternative<host::Timeout>(error))
+    return fmt::format(
+        "the connection was accepted, but unit {} does not answer; check the unit id: a node answers to its "
+        "own, 0 and 255, a gateway to those of the units behind it",
+        where.unit);
   return where.serial.present() || has_remedy(error) ? std::string() : std::string(over_tcp);
 }
 

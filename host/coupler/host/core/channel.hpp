@@ -87,7 +87,7 @@ class Channel {
   /// Discards bytes that came while no request was outstanding. An error means that the connection has ended
   /// or must not be used any more.
   virtual Result<> discard_unasked() {
-    return fail(TransportFailure{"the device closed the connection, or sent an unexpected reply"});
+    return fail(TransportFailure{"the connection has ended"});
   }
   /// Returns when bytes have come, when the connection has ended, after a call of `wakeup` or `interrupted`,
   /// or at `time`. On a bus no bytes end it.

@@ -81,7 +81,8 @@ std::string silence_text(const Map& known, const Error& error) {
         known.connection.unit, to_string(error), line_remedy(known.connection));
   if (is_closed(error))
     return fmt::format(
-        "connected, but instead of answering the request for its identity {}; it may take no connections "
+        "the device accepts connections, but instead of answering the request for its identity {}; it may "
+        "take none "
         "from "
         "this machine (a node's 'allow'), have as many as it can, or be starting. If it is a foreign coupler "
         "that does so with addresses it does not have, give its map 'verify: off', or start with --verify "
@@ -93,7 +94,8 @@ std::string silence_text(const Map& known, const Error& error) {
       "that 'unit' is its unit id. If it is a foreign coupler that ignores addresses it does not have, or "
       "answers nonsense, give its map 'verify: off', or start with --verify off (a client: "
       "Options::verify)",
-      is_unit_away(error) ? "the gateway answers" : "connected", known.connection.unit, to_string(error));
+      is_unit_away(error) ? "the gateway answers" : "the device accepts connections", known.connection.unit,
+      to_string(error));
 }
 
 Result<Identity> check_identity(Link& link, const Map& known, const MapLoader& load) {

@@ -127,6 +127,12 @@ Result<Descriptor> connect_to_one(const addrinfo* addresses, const std::string& 
     by_address.insert(fmt::format("{}: {}", text_of(*address), connected.error()));
   }
   if (reasons.empty()) return fail(NotConnected{where + ": no address"});
+  if (reasons == std::set<std::string>{std::strerror(ETIMEDOUT)})
+    return fail(NotConnected{
+        fmt::format("{}: nothing answers there (connection timed out); check the address, and that "
+                    "the device is on; a firewall may drop what is sent to this port",
+                    where),
+        true});
   return fail(
       NotConnected{fmt::format("{}: {}", where, fmt::join(reasons.size() > 1 ? by_address : reasons, "; "))});
 }

@@ -163,7 +163,8 @@ bool DeviceDriver::report(Time now, bool force) {
   thread_.report_held_back();
   for (LogLineLimit* const lines : {&refused_lines_, &wall_lines_})
     if (const auto line = lines->due(now)) log(Level::warning, *line);
-  return diagnostics_.update(device, points);
+  if (const auto slow = pace_.update(map_, device, now)) log(Level::warning, *slow);
+  return diagnostics_.update(device, points, pace_.trouble());
 }
 
 void DeviceDriver::on_values(Span<const std::uint32_t> points) {

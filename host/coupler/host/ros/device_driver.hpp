@@ -11,6 +11,7 @@
 
 #include "coupler/base/log_line_limit.hpp"
 #include "coupler/host/core/device_thread.hpp"
+#include "coupler/host/core/pace.hpp"
 #include "coupler/host/core/value_table.hpp"
 #include "coupler/host/core/wall_time.hpp"
 #include "coupler/host/ros/device_recording.hpp"
@@ -90,6 +91,7 @@ class DeviceDriver : public Sink {
   Node::PublishStatus publish_status_;
   Node::PublishScheduled publish_scheduled_;  ///< empty if no point can be written
   Diagnostics diagnostics_;
+  Pace pace_;
   DeviceServices services_;
   std::vector<std::unique_ptr<Follower>> followers_;  ///< as they are when the thread starts
   std::unique_ptr<Link> link_;

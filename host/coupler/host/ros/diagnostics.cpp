@@ -73,7 +73,9 @@ Diagnostics::Diagnostics(const Map& map, Node& node)
   if (map.connection.tls.present()) add("certificates", &Diagnostics::certificates);
 }
 
-bool Diagnostics::update(const DeviceSnapshot& device, const std::vector<PointQuality>& points) {
+bool Diagnostics::update(const DeviceSnapshot& device, const std::vector<PointQuality>& points,
+                         const std::string& slow) {
+  slow_ = slow;
   next_ = device;
   points_ = points;
   return next_.online != now_.online;
@@ -98,7 +100,9 @@ DiagnosticEntry Diagnostics::connection() {
 }
 
 DiagnosticEntry Diagnostics::polling() {
-  DiagnosticEntry result = entry_of(polling_health(map_, points_, before_, now_));
+  Health health = polling_health(map_, points_, before_, now_);
+  if (health.level == Level::info && !slow_.empty()) health = {Level::warning, slow_};  // it does not flap
+  DiagnosticEntry result = entry_of(health);
   Values values(result);
   values.add("cycle", now_.cycles);
   values.add("request latency", now_.latency);

@@ -44,7 +44,8 @@ class Diagnostics {
 
   /// Sets what the next message says. Returns true if it should not wait, since the device came online or
   /// went offline.
-  bool update(const DeviceSnapshot& device, const std::vector<PointQuality>& points);
+  /// `slow`: see Pace::trouble().
+  bool update(const DeviceSnapshot& device, const std::vector<PointQuality>& points, const std::string& slow);
 
  private:
   DiagnosticEntry connection();
@@ -59,6 +60,7 @@ class Diagnostics {
   DeviceSnapshot before_;  ///< of the message before
   DeviceSnapshot now_;     ///< of this message
   std::vector<PointQuality> points_;
+  std::string slow_;
 };
 
 }  // namespace coupler::host
