@@ -160,6 +160,19 @@ std::string bare(std::string_view word) {
   return out;
 }
 
+enum class Framing { unsaid, tcp, rtu, other, unknown };
+
+/// "rtu", "FramerType.RTU" and "ModbusRtuFramer" are one, as are "socket" and "ModbusSocketFramer".
+Framing framing_of(std::string_view given) {
+  std::string word = bare(given);
+  for (const std::string_view around : {"framertype.", "modbus", "framer"})
+    if (const std::size_t at = word.find(around); at != std::string::npos) word.erase(at, around.size());
+  if (word.empty() || word == "default") return Framing::unsaid;
+  if (word == "rtu") return Framing::rtu;
+  if (word == "socket" || word == "tcp" || word == "tls") return Framing::tcp;
+  return word == "ascii" || word == "binary" ? Framing::other : Framing::unknown;
+}
+
 }  // namespace
 
 Entry read_serial_line(const Entry& given, const LineKeys& keys, Problems& problems) {
@@ -194,15 +207,21 @@ Transport read_transport(const Entry* given, Transport usual, Problems& problems
 void read_framing(const Entry* given, Transport& transport, Problems& problems) {
   if (!is_given(given)) return;
   const Entry& word = *given;
-  const std::string framing = bare(word.text);
-  if (framing == "rtu") {
+  const Framing framing = framing_of(word.text);
+  if (framing == Framing::unsaid) return;
+  if (framing == Framing::rtu) {
     transport.rtu = true;
-  } else if (transport.serial || (framing != "socket" && framing != "tls")) {
+  } else if (transport.serial || framing == Framing::other) {
     transport.rtu = true;
     problems.warning(word.at,
                      fmt::format("a map does not have the framing {}{}, so it has RTU", shown(word.text),
                                  transport.serial ? " on a serial line" : ""),
                      "set the device to RTU");
+  } else if (framing == Framing::unknown) {
+    problems.warning(word.at,
+                     fmt::format("the framing {} is not known, so the map has {}", shown(word.text),
+                                 transport.rtu ? "RTU" : "Modbus/TCP"),
+                     "write 'framing: rtu' into the map if the device speaks RTU over TCP");
   }
 }
 

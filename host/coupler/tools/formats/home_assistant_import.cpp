@@ -168,8 +168,9 @@ SecretUnit find_secret_unit(const Entry& hub, Problems& problems) {
 
 void report_old_form(const HomeAssistantFile& file, bool is_all, Problems& problems) {
   for (const Position at : file.old_form) {
-    const char* what =
-        "'platform: modbus' is an old form that Home Assistant no longer reads, so its entities are left out";
+    const char* what = is_all ? "'platform: modbus' is an old form that Home Assistant no longer reads"
+                              : "'platform: modbus' is an old form that Home Assistant no longer reads, so "
+                                "its entities are left out";
     const char* remedy =
         "write them below 'sensors:', 'binary_sensors:', 'switches:' or 'climates:' of the hub, with "
         "'address' in place of 'register' and 'coil', and 'input_type' in place of 'register_type'";
@@ -178,6 +179,18 @@ void report_old_form(const HomeAssistantFile& file, bool is_all, Problems& probl
     else
       problems.warning(at, what, remedy);
   }
+}
+
+/// Tells of tags in the place of hubs, or of a list of them.
+void check_included_hubs(const HomeAssistantFile& file, Problems& problems) {
+  Entry places;
+  for (const Entry& part : file.parts) {
+    if (part.kind == Entry::Kind::scalar) places.children.push_back(part);
+    for (const Entry& child : part.children)
+      if (child.kind == Entry::Kind::scalar && part.kind == Entry::Kind::list)
+        places.children.push_back(child);
+  }
+  take_tags_out(places, file.tags, problems);
 }
 
 std::vector<ForeignUnit> read_hub(const Entry& hub, Problems& problems) {
@@ -224,9 +237,13 @@ std::vector<ForeignUnit> read_home_assistant(std::string_view text, const Import
     for (const Entry& hub : list_of(part))
       if (is_hub(hub)) hubs.push_back(&hub);
   report_old_form(*file, hubs.empty(), problems);
+  if (options.device.empty() || hubs.empty()) check_included_hubs(*file, problems);
   if (hubs.empty() && problems.has_errors()) return {};
-  const Entry* hub = choose(hubs, options.device, problems);
-  return hub != nullptr ? read_hub(*hub, problems) : std::vector<ForeignUnit>{};
+  const Entry* chosen = choose(hubs, options.device, problems);
+  if (chosen == nullptr) return {};
+  Entry hub = *chosen;
+  take_tags_out(hub, file->tags, problems);
+  return read_hub(hub, problems);
 }
 
 }  // namespace coupler::formats

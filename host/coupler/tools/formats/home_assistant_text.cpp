@@ -23,8 +23,30 @@ std::string_view first_line(std::string_view text) {
   return text.substr(0, std::min(text.find('\n'), text.size()));
 }
 
+constexpr std::string_view blanks_and_quotes = " \t\r\"'";
+
+std::string_view without_quotes(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(blanks_and_quotes);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(blanks_and_quotes) - begin + 1);
+}
+
 /// "modbus", and "modbus second" of a configuration in several parts.
 bool is_modbus_key(std::string_view key) { return key == "modbus" || key.substr(0, 7) == "modbus "; }
+
+/// The line in the text, from 0, of the first `modbus:` below another key, as in a package.
+std::optional<int> line_of_nested_key(std::string_view text) {
+  int number = 0;
+  for (std::string_view rest = text; !rest.empty(); ++number) {
+    const std::string_view line = first_line(rest);
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    const std::size_t colon = line.find(':');
+    const bool is_below = !line.empty() && (line[0] == ' ' || line[0] == '\t');
+    if (is_below && colon != std::string_view::npos && is_modbus_key(without_quotes(line.substr(0, colon))))
+      return number;
+  }
+  return std::nullopt;
+}
 
 /// A key at the beginning of a line, and the lines until the next one.
 struct Block {
@@ -40,7 +62,7 @@ std::vector<Block> blocks_of(std::string_view text) {
     const bool begins_key = !line.empty() &&
                             std::string_view(" \t#\r").find(line[0]) == std::string_view::npos &&
                             line.substr(0, 2) != "- " && line != "-";
-    if (begins_key) blocks.push_back({line.substr(0, line.find(':')), rest.substr(0, 0)});
+    if (begins_key) blocks.push_back({without_quotes(line.substr(0, line.find(':'))), rest.substr(0, 0)});
     const std::size_t size = std::min(line.size() + 1, rest.size());
     Block& block = blocks.back();
     block.text = {block.text.empty() ? rest.data() : block.text.data(), block.text.size() + size};
@@ -61,19 +83,29 @@ std::vector<std::string_view> names_behind(char mark, std::string_view text) {
   return names;
 }
 
-/// Keeps `modbus:`, and the blocks with the anchors that kept blocks have aliases of. False if there is no
-/// such key.
-bool choose_blocks(std::vector<Block>& blocks) {
+/// Where the hubs stand.
+enum class Below { key, packages, nothing };
+
+Below place_of_hubs(const std::vector<Block>& blocks) {
+  if (std::any_of(blocks.begin(), blocks.end(), [](const Block& block) { return is_modbus_key(block.key); }))
+    return Below::key;
+  const auto has_nested = [](const Block& block) {
+    return !block.key.empty() && line_of_nested_key(block.text);
+  };
+  return std::any_of(blocks.begin(), blocks.end(), has_nested) ? Below::packages : Below::nothing;
+}
+
+/// Keeps the blocks with hubs, and those with the anchors that kept blocks have aliases of.
+void choose_blocks(std::vector<Block>& blocks, Below below) {
   std::multimap<std::string_view, Block*> anchors;
   std::vector<Block*> next;
   for (Block& block : blocks) {
-    block.keep = is_modbus_key(block.key);
+    block.keep = below == Below::key ? is_modbus_key(block.key) : line_of_nested_key(block.text).has_value();
     if (block.keep)
       next.push_back(&block);
     else
       for (const std::string_view name : names_behind('&', block.text)) anchors.emplace(name, &block);
   }
-  const bool any = !next.empty();
   while (!next.empty()) {
     const Block* block = next.back();
     next.pop_back();
@@ -84,7 +116,26 @@ bool choose_blocks(std::vector<Block>& blocks) {
       anchors.erase(begin, end);
     }
   }
-  return any;
+}
+
+/// Tells of packages beside `modbus:`.
+void tell_packages(const std::vector<Block>& blocks, Problems& problems) {
+  int line = 1;
+  for (const Block& block : blocks) {
+    const auto nested = block.keep ? std::nullopt : line_of_nested_key(block.text);
+    if (nested)
+      problems.warning({line + *nested, 1}, "the hubs of this 'modbus:' below another key are not read",
+                       "give a file that has this part only");
+    line += static_cast<int>(std::count(block.text.begin(), block.text.end(), '\n'));
+  }
+}
+
+void collect_nested(Entry& entry, std::vector<Entry>& parts) {
+  for (Entry& child : entry.children)
+    if (is_modbus_key(child.key))
+      parts.push_back(std::move(child));
+    else
+      collect_nested(child, parts);
 }
 
 /// Blank lines in place of the blocks that are not kept, which need not be YAML that a map's loader reads.
@@ -106,9 +157,12 @@ std::vector<Position> old_forms(std::string_view text) {
     const std::string_view line = first_line(rest);
     rest.remove_prefix(std::min(line.size() + 1, rest.size()));
     ++number;
-    const std::size_t key = line.find("platform:");
+    constexpr std::string_view word = "platform";
+    const std::size_t key = line.find(word);
     if (key == std::string_view::npos || line.substr(0, key).find('#') != std::string_view::npos) continue;
-    const std::size_t begin = line.find_first_not_of(" \t\"'", key + 9);
+    const std::size_t colon = line.find_first_not_of(blanks_and_quotes, key + word.size());
+    if (colon == std::string_view::npos || line[colon] != ':') continue;
+    const std::size_t begin = line.find_first_not_of(blanks_and_quotes, colon + 1);
     if (begin == std::string_view::npos) continue;
     const std::size_t end = std::min(line.find_first_of(" \t\r\"',}", begin), line.size());
     if (line.substr(begin, end - begin) == "modbus") places.push_back({number, static_cast<int>(key) + 1});
@@ -116,12 +170,10 @@ std::vector<Position> old_forms(std::string_view text) {
   return places;
 }
 
-using Places = std::set<std::pair<int, int>>;
-
 /// The tags of values, as `!secret` and `!include`, become plain text of the same length. Returns where they
 /// were.
-Places blank_tags(std::string& text) {
-  Places places;
+TagPlaces blank_tags(std::string& text) {
+  TagPlaces places;
   int line = 1;
   std::size_t line_begins = 0;
   char quote = '\0';
@@ -177,8 +229,9 @@ bool keep_tagged(Entry& entry, Problems& problems) {
   return false;
 }
 
-/// A secret is left out with a warning; what stands in other files is an error.
-void take_tags_out(Entry& entry, const Places& places, Problems& problems) {
+}  // namespace
+
+void take_tags_out(Entry& entry, const TagPlaces& places, Problems& problems) {
   const auto is_left_out = [&](Entry& child) {
     return child.kind == Entry::Kind::scalar && places.count({child.at.line, child.at.column}) != 0 &&
            !keep_tagged(child, problems);
@@ -188,34 +241,33 @@ void take_tags_out(Entry& entry, const Places& places, Problems& problems) {
   for (Entry& child : entry.children) take_tags_out(child, places, problems);
 }
 
-}  // namespace
-
 std::optional<HomeAssistantFile> read_home_assistant_file(std::string_view text, Problems& problems) {
   std::vector<Block> blocks = blocks_of(text);
-  const bool whole = choose_blocks(blocks);
-  std::string kept = whole ? kept_text(blocks) : std::string(text);
-  const Places tags = blank_tags(kept);
+  const Below below = place_of_hubs(blocks);
+  if (below != Below::nothing) choose_blocks(blocks, below);
+  if (below == Below::key) tell_packages(blocks, problems);
+  std::string kept = below != Below::nothing ? kept_text(blocks) : std::string(text);
   HomeAssistantFile file;
+  file.tags = blank_tags(kept);
   file.old_form = old_forms(text);
   auto root = loader::parse_document(kept, problems, loader::Aliases::read);
   if (!root) return std::nullopt;
-  if (!whole) {
-    take_tags_out(*root, tags, problems);
+  if (below == Below::packages) {
+    collect_nested(*root, file.parts);
+  } else if (below == Below::key) {
+    for (Entry& part : root->children)
+      if (is_modbus_key(part.key)) file.parts.push_back(std::move(part));
+  } else {
     file.parts.push_back(std::move(*root));
-    return file;
   }
-  Entry modbus;  // so that a tag in place of a whole part is seen, too
-  for (Entry& part : root->children)
-    if (is_modbus_key(part.key)) modbus.children.push_back(std::move(part));
-  take_tags_out(modbus, tags, problems);
-  file.parts = std::move(modbus.children);
   return file;
 }
 
 std::string_view secret_of(const Entry& entry) {
   constexpr std::string_view tag = "!secret";
   const std::string_view text = entry.text;
-  return entry.kind == Entry::Kind::null && text.substr(0, tag.size()) == tag ? text : std::string_view{};
+  const bool is_secret = entry.kind == Entry::Kind::null && text.substr(0, tag.size()) == tag;
+  return is_secret ? without_quotes(text.substr(tag.size())) : std::string_view{};
 }
 
 }  // namespace coupler::formats

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
+#include <tuple>
 #include <unordered_map>
 
 #include <fmt/format.h>
@@ -14,6 +16,7 @@
 #include "coupler/map/loader/source_text.hpp"
 #include "coupler/map/printable.hpp"
 #include "coupler/tools/formats/map_tree.hpp"
+#include "coupler/tools/formats/spelling.hpp"
 #include "coupler/tools/formats/text_encoding.hpp"
 
 namespace coupler::formats {
@@ -22,7 +25,7 @@ namespace {
 using loader::Entry;
 using loader::Problems;
 
-constexpr Importer formats[] = {
+constexpr Importer all_importers[] = {
     {"csv", "a table of points: one row a point, one column a key", read_csv, true},
     {"origin", "bitmeal/ros-modbus-device-driver, YAML or JSON", read_ros_modbus_device_driver},
     {"unslave", "Unslave's config.json", read_unslave},
@@ -176,6 +179,12 @@ std::string comment_of(const Importer& importer, std::string_view file) {
 
 Diagnostics quoted(Problems&& problems, std::string_view text) {
   Diagnostics diagnostics = std::move(problems).sorted();
+  // What stands behind an alias is read at each of its places, and told once.
+  std::set<std::tuple<int, int, std::string>> told;
+  const auto is_told = [&](const Diagnostic& each) {
+    return !told.emplace(each.line, each.column, each.what).second;
+  };
+  diagnostics.erase(std::remove_if(diagnostics.begin(), diagnostics.end(), is_told), diagnostics.end());
   quote(diagnostics, text);
   return diagnostics;
 }
@@ -183,8 +192,11 @@ Diagnostics quoted(Problems&& problems, std::string_view text) {
 }  // namespace
 
 std::string mended_name(std::string_view name, std::string_view prefix) {
+  std::string unknown;
+  const std::string spelt =
+      needs_spelling(name) ? in_ascii(name, unknown).value_or(std::string(name)) : std::string(name);
   std::string out;
-  for (const char c : name) {
+  for (const char c : spelt) {
     if (out.size() == longest) break;
     const bool keeps = loader::is_letter(c) || loader::is_digit(c);
     const bool joins = !out.empty() && out.back() != '_' && out.back() != '/';
@@ -198,12 +210,12 @@ std::string mended_name(std::string_view name, std::string_view prefix) {
   return loader::is_letter(out.front()) ? out : fmt::format("{}_{}", prefix, out);
 }
 
-Span<const Importer> importers() { return formats; }
+Span<const Importer> importers() { return all_importers; }
 
 const Importer* find_importer(std::string_view name) {
-  const auto* found = std::find_if(std::begin(formats), std::end(formats),
+  const auto* found = std::find_if(std::begin(all_importers), std::end(all_importers),
                                    [name](const Importer& importer) { return importer.name == name; });
-  return found == std::end(formats) ? nullptr : found;
+  return found == std::end(all_importers) ? nullptr : found;
 }
 
 ImportResult import_text(const Importer& importer, std::string_view text, std::string_view file,

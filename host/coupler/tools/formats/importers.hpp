@@ -109,8 +109,8 @@ struct ImportResult {
 ImportResult import_text(const Importer& importer, std::string_view text, std::string_view file,
                          const ImportOptions& options);
 
-/// The nearest valid ROS name: what is not a letter, digit or '_' becomes '_', and what begins otherwise gets
-/// `prefix` in front. '/' stays where a name may have it.
+/// The nearest valid ROS name: letters with accents are spelt in ASCII, what is not a letter, digit or '_'
+/// becomes '_', and what begins otherwise gets `prefix` in front. '/' stays where a name may have it.
 std::string mended_name(std::string_view name, std::string_view prefix);
 
 }  // namespace coupler::formats

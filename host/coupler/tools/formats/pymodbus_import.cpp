@@ -79,7 +79,8 @@ void read_device_id(const Entry& entry, ForeignUnit& unit, Problems& problems) {
 void read_server(const Entry& server, ForeignUnit& unit, Problems& problems) {
   constexpr LineKeys line = {"port", "baudrate", "bytesize", "parity", "stopbits", "19200", "none", "1"};
   Transport transport = read_transport(loader::child(server, "comm"), {}, problems);
-  read_framing(loader::child(server, "framer"), transport, problems);
+  const Entry* framer = loader::child(server, "framer");  // "method" before pymodbus 3.0
+  read_framing(framer != nullptr ? framer : loader::child(server, "method"), transport, problems);
   std::vector<Entry>& keys = unit.map.children;
   if (transport.serial)
     keys.push_back(read_serial_line(server, line, problems));
@@ -87,7 +88,9 @@ void read_server(const Entry& server, ForeignUnit& unit, Problems& problems) {
     keys.push_back(rtu_framing(server.key_at));
   ConversionWarnings own;
   for (const Entry& entry : server.children) {
-    if (entry.key == "comm" || entry.key == "framer" || (transport.serial && line.has(entry.key))) continue;
+    if (entry.key == "comm" || entry.key == "framer" || entry.key == "method" ||
+        (transport.serial && line.has(entry.key)))
+      continue;
     if (entry.key == "port") {
       keys.push_back(scalar("port", entry.text, entry.at));
     } else if (entry.key == "host") {

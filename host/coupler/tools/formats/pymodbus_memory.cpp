@@ -14,9 +14,9 @@ namespace {
 using loader::Entry;
 using loader::shown;
 
-constexpr SimulatedType types[] = {{"bits", 1, "WORD"},    {"int16", 1, "INT"},    {"uint16", 1, "UINT"},
-                                   {"uint32", 2, "UDINT"}, {"float32", 2, "REAL"}, {"float64", 4, "LREAL"},
-                                   {"string", 0, "STRING"}};
+constexpr SimulatedType simulated_types[] = {
+    {"bits", 1, "WORD"},    {"int16", 1, "INT"},     {"uint16", 1, "UINT"},  {"uint32", 2, "UDINT"},
+    {"float32", 2, "REAL"}, {"float64", 4, "LREAL"}, {"string", 0, "STRING"}};
 
 /// "kwargs" and "parameters" are the action's.
 constexpr std::string_view entry_keys[] = {"addr", "value", "action", "kwargs", "parameters"};
@@ -30,16 +30,17 @@ bool is_list(const Entry& entry) { return entry.kind == Entry::Kind::list; }
 SimulatedMemory::SimulatedMemory(const Entry& device, ConversionWarnings& losses, loader::Problems& problems)
     : losses_(losses), problems_(problems) {
   read_setup(device);
-  for (const SimulatedType& type : types)
+  for (const SimulatedType& type : simulated_types)
     if (const Entry* entries = loader::child(device, type.key))
       for (const Entry& entry : entries->children) define(type, entry);
   if (problems_.has_errors()) return;
   allow_writing(device);
   repeat(device);
   for (const Entry& entry : device.children) {
-    const bool known =
-        entry.key == "setup" || entry.key == "invalid" || entry.key == "write" || entry.key == "repeat" ||
-        std::any_of(std::begin(types), std::end(types), [&](const auto& t) { return t.key == entry.key; });
+    const bool known = entry.key == "setup" || entry.key == "invalid" || entry.key == "write" ||
+                       entry.key == "repeat" ||
+                       std::any_of(std::begin(simulated_types), std::end(simulated_types),
+                                   [&](const auto& t) { return t.key == entry.key; });
     if (!known)
       problems_.error(entry.key_at,
                       fmt::format("{} is not a part of a device of the simulator", shown(entry.key)),

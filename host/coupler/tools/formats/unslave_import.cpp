@@ -138,7 +138,7 @@ const Entry* line_of(const Entry& root) {
   return nullptr;
 }
 
-LineKeys keys_of(const Entry& line) {
+LineKeys line_keys_of(const Entry& line) {
   return {loader::child(line, "name") != nullptr ? "name" : "port", "baudRate", "dataBits", "parity",
           "stopBits"};
 }
@@ -149,16 +149,17 @@ void report_simulators(const Entry& entry, Problems& problems) {
                    "no action is needed");
 }
 
-/// The connection: a serial line unless `mode` says something else. Warns of keys that belong to the
-/// simulator.
+/// The connection: what `mode` says, else a serial line, or TCP where only its port is given. Warns of keys
+/// that belong to the simulator.
 std::vector<Entry> read_device(const Entry& root, Problems& problems) {
   std::vector<Entry> keys;
   const Entry* mode = loader::child(root, "mode");
-  const Transport transport = read_transport(mode, {true, true}, problems);
   const Entry none = section("serial", root.at);
   const Entry* line = line_of(root);
+  const bool is_serial = line != nullptr || loader::child(root, "tcpPort") == nullptr;
+  const Transport transport = read_transport(mode, {is_serial, is_serial}, problems);
   const Entry& given = line != nullptr ? *line : none;
-  const LineKeys line_keys = keys_of(given);
+  const LineKeys line_keys = line_keys_of(given);
   if (transport.serial) {
     keys.push_back(read_serial_line(given, line_keys, problems));
     if (line != &root)

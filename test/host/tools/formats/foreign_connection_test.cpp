@@ -124,6 +124,32 @@ TEST(ForeignConnection, Udp_tls_and_unknown_words_are_told) {
               HasSubstr("given:1:10: warning: 'ASCII' is Modbus ASCII, so the map has RTU in its place"));
 }
 
+TEST(ForeignConnection, A_framer_has_many_names) {
+  const auto with = [](const std::string& framer) {
+    return pymodbus_server(R"("comm": "tcp", "host": "plc", "port": 802, )" + framer);
+  };
+  for (const char* word : {"ModbusSocketFramer", "FramerType.SOCKET", "socket", "SOCKET", "", "default"}) {
+    const Imported imported = with(R"("framer": ")" + std::string(word) + "\"");
+    EXPECT_THAT(imported.text(), Not(HasSubstr("framing"))) << word;
+    EXPECT_THAT(imported.said, Not(HasSubstr("framing"))) << word;
+  }
+  for (const char* key :
+       {R"("framer": "ModbusRtuFramer")", R"("framer": "FramerType.RTU")", R"("method": "rtu")"}) {
+    EXPECT_THAT(with(key).text(), HasSubstr("framing: rtu")) << key;
+    EXPECT_THAT(with(key).said, Not(HasSubstr("framing"))) << key;
+  }
+  EXPECT_THAT(with(R"("framer": "carrier pigeon")").text(), Not(HasSubstr("framing")));
+  EXPECT_THAT(
+      with(R"("framer": "carrier pigeon")").said,
+      HasSubstr("warning: the framing 'carrier pigeon' is not known, so the map has Modbus/TCP; write "
+                "'framing: rtu' into the map if the device speaks RTU over TCP"));
+}
+
+TEST(ForeignConnection, Unslaves_tcp_port_alone_is_TCP) {
+  EXPECT_THAT(unslave_file(R"("tcpPort": 4001,)").text(),
+              AllOf(HasSubstr("port: 4001\n"), Not(HasSubstr("serial"))));
+}
+
 TEST(ForeignConnection, A_unit_that_rtu_does_not_have_is_refused_where_it_stands) {
   EXPECT_THAT(Imported("home-assistant",
                        "- type: rtuovertcp\n  host: plc\n  sensors: [{name: s, address: 1, slave: 255}]\n")

@@ -144,5 +144,72 @@ TEST(HomeAssistantYaml, Bombs_of_aliases_are_refused) {
               HasSubstr("error: aliases of this value make the file too large"));
 }
 
+TEST(HomeAssistantYaml, Only_the_hub_that_is_chosen_is_read) {
+  const std::string text =
+      "modbus:\n- {name: a, type: tcp, host: plc, sensors: [{name: s, address: 1}]}\n"
+      "- {name: b, type: tcp, host: plc, binary_sensors: !include b.yaml, sensors: [{name: t, address: "
+      "!secret x}]}\n"
+      "- !include c.yaml\n";
+  formats::ImportOptions options{"m", {}};
+  options.device = "a";
+  const Imported chosen("home-assistant", text, options);
+  EXPECT_THAT(chosen.text(), HasSubstr("s: {address: 1"));
+  EXPECT_THAT(chosen.said, Not(HasSubstr("error")));
+  options.device = "b";
+  EXPECT_THAT(Imported("home-assistant", text, options).said,
+              AllOf(HasSubstr("'binary_sensors' stands in another file"), HasSubstr("'address' is a secret"),
+                    Not(HasSubstr("given:4"))));
+  EXPECT_THAT(Imported("home-assistant", text).said,
+              AllOf(HasSubstr("given:4:3: error: the value stands in another file"),
+                    HasSubstr("several hubs: a, b")));
+}
+
+TEST(HomeAssistantYaml, A_problem_behind_an_alias_is_told_once) {
+  const std::string said = Imported("home-assistant",
+                                    "x: &x\n  y: !secret foo\nmodbus:\n- type: tcp\n  host: plc\n  sensors:\n"
+                                    "  - {<<: *x, name: a, address: 1}\n  - {<<: *x, name: b, address: 2}\n")
+                               .said;
+  EXPECT_EQ(said.find("'y' is a secret"), said.rfind("'y' is a secret")) << said;
+  EXPECT_NE(said.find("'y' is a secret"), std::string::npos) << said;
+}
+
+TEST(HomeAssistantYaml, A_secret_is_the_same_in_quotes) {
+  EXPECT_THAT(yaml_hub("  sensors:\n  - {name: a, slave: !secret u, address: 1}\n"
+                       "  - {name: b, slave: !secret \"u\", address: 2}\n")
+                  .text(),
+              AllOf(HasSubstr("a: {"), HasSubstr("b: {")));
+}
+
+TEST(HomeAssistantYaml, Keys_may_stand_in_quotes) {
+  EXPECT_THAT(Imported("home-assistant",
+                       "automation: !include a.yaml\n\"modbus\":\n- {type: tcp, host: plc, sensors: "
+                       "[{name: s, address: 1}]}\n")
+                  .text(),
+              HasSubstr("s: {address: 1"));
+  EXPECT_THAT(
+      Imported("home-assistant", "sensor:\n- \"platform\": modbus\n").said,
+      AllOf(HasSubstr("given:2:4: error: 'platform: modbus' is an old form"), Not(HasSubstr("left out"))));
+}
+
+TEST(HomeAssistantYaml, Hubs_of_a_package_are_found) {
+  const std::string hub = "modbus: [{type: tcp, host: plc, sensors: [{name: s, address: 1}]}]\n";
+  EXPECT_THAT(Imported("home-assistant", "solar:\n  " + hub).text(), HasSubstr("s: {address: 1"));
+  EXPECT_THAT(Imported("home-assistant",
+                       "script: !include s.yaml\nhomeassistant:\n  packages:\n    solar:\n      " + hub)
+                  .text(),
+              HasSubstr("s: {address: 1"));
+  const Imported both("home-assistant", "homeassistant:\n  packages:\n    solar:\n      " + hub + hub);
+  EXPECT_THAT(both.text(), HasSubstr("s: {address: 1"));
+  EXPECT_THAT(both.said,
+              HasSubstr("given:4:1: warning: the hubs of this 'modbus:' below another key are not read"));
+}
+
+TEST(HomeAssistantYaml, Names_are_spelt_in_ASCII) {
+  const Imported imported("home-assistant",
+                          "modbus:\n- {name: Wärmepumpe, type: tcp, host: plc, sensors: [{name: Ölstand, "
+                          "address: 1}]}\n");
+  EXPECT_THAT(imported.text(), AllOf(HasSubstr("name: waermepumpe\n"), HasSubstr("oelstand: {address: 1")));
+}
+
 }  // namespace
 }  // namespace coupler::test

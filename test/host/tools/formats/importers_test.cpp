@@ -102,7 +102,7 @@ TEST(MendedName, Keeps_letters_digits_and_inner_slashes_and_joins_the_rest_by_on
   EXPECT_EQ(mended_name("Motor 1 - speed (rpm)", "p"), "Motor_1_speed_rpm");
   EXPECT_EQ(mended_name("axis/x", "p"), "axis/x");
   EXPECT_EQ(mended_name("/axis//x/", "p"), "axis/x");
-  EXPECT_EQ(mended_name("K\xC3\xBChler", "p"), "K_hler");
+  EXPECT_EQ(mended_name("K\xC3\xBChler", "p"), "kuehler");
 }
 
 TEST(MendedName, Gets_the_prefix_where_it_would_begin_with_something_else_than_a_letter) {
