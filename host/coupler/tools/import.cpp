@@ -8,6 +8,9 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <tl/expected.hpp>
@@ -29,7 +32,7 @@ struct Arguments {
   std::string out;
   formats::ImportOptions options;
   std::string addressing = "zero_based";
-  std::string columns;
+  std::vector<std::string> columns;
   unsigned unit = 0;
   bool force = false;
   bool list = false;
@@ -78,14 +81,26 @@ bool holds_other_text(const fs::path& path, const std::string& text) {
   return !found || *found != text;
 }
 
+/// Takes one column's heading up to the next comma; in quotes, it may have commas.
+std::string take_heading(std::string_view& text) {
+  const bool is_quoted = text.substr(0, 1) == "\"" && text.find('"', 1) != std::string_view::npos;
+  if (is_quoted) text.remove_prefix(1);
+  const std::size_t end = std::min(text.find(is_quoted ? '"' : ','), text.size());
+  std::string heading(text.substr(0, end));
+  text.remove_prefix(end + (is_quoted ? 1 : 0));
+  return heading;
+}
+
 /// "name=Tag no.,address=Reg" for --columns; false if it is not of that form.
 bool parse_columns(std::string_view text, std::vector<formats::ColumnNames>& columns) {
   while (!text.empty()) {
-    const std::string_view one = text.substr(0, text.find(','));
-    text.remove_prefix(std::min(text.size(), one.size() + 1));
-    const std::size_t equals = one.find('=');
-    if (equals == std::string_view::npos || equals == 0 || equals + 1 == one.size()) return false;
-    columns.push_back({std::string(one.substr(0, equals)), std::string(one.substr(equals + 1))});
+    const std::size_t equals = text.find('=');
+    if (equals == std::string_view::npos || equals == 0) return false;
+    std::string column(text.substr(0, equals));
+    text.remove_prefix(equals + 1);
+    columns.push_back({std::move(column), take_heading(text)});
+    if (columns.back().heading.empty() || (!text.empty() && text[0] != ',')) return false;
+    text.remove_prefix(std::min<std::size_t>(text.size(), 1));
   }
   return true;
 }
@@ -127,10 +142,11 @@ Exit run(const Arguments& arguments) {
                     "give one of " + names_of_formats());
   formats::ImportOptions options = arguments.options;
   options.addressing = parse_word<loader::Addressing>(arguments.addressing).value_or(options.addressing);
-  if (!parse_columns(arguments.columns, options.columns))
-    return complain("import", bad_call,
-                    fmt::format("--columns '{}' is not a list of columns", arguments.columns),
-                    "write it as in --columns 'name=Tag no.,address=Reg'");
+  for (const std::string& columns : arguments.columns)
+    if (!parse_columns(columns, options.columns))
+      return complain("import", bad_call, fmt::format("--columns '{}' is not a list of columns", columns),
+                      "write it as in --columns 'name=Tag no.,address=Reg'; a heading with a comma stands in "
+                      "quotes, as in --columns 'scale=\"Gain, SF\"'");
   const bool has_table_options = !arguments.columns.empty() || arguments.addressing != "zero_based" ||
                                  !options.order.empty() || !options.strings.empty();
   if (!importer->is_table && has_table_options)
@@ -182,10 +198,13 @@ void add_import(Program& program, Exit& exit) {
       .one_of({"zero_based", "modicon"})
       .type_name("KIND");
   command
-      .add_option("--columns", arguments->columns,
-                  "Headings of a table that are not understood, or have two meanings: name=Tag,address=Reg, "
-                  "scale=Gain (a factor) or divisor=Gain, scaled_units=Unit (0.1V scales) or units=Unit (it "
-                  "is the name of the units), scale_offset=Offset or address_offset=Offset")
+      .add_option(
+          "--columns", arguments->columns,
+          "Headings of a table that are not understood, or have two meanings: name=Tag,address=Reg; may be "
+          "given several times; "
+          "scale=Gain (a factor) or divisor=Gain, scaled_units=Unit (0.1V scales) or units=Unit (it "
+          "is the name of the units), scale_offset=Offset or address_offset=Offset, ignore=Range (left out)")
+      .one_value()
       .type_name("LIST");
   command
       .add_option("--order", arguments->options.order,

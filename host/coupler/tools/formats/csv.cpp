@@ -19,21 +19,6 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-char separator_of(std::string_view text) {
-  constexpr std::array separators{';', ',', '\t'};
-  std::array<std::size_t, separators.size()> counts{};
-  bool quoted = false;
-  for (const char c : text) {
-    if (c == '"') quoted = !quoted;
-    if (quoted) continue;
-    const auto* found = std::find(separators.begin(), separators.end(), c);
-    if (found != separators.end()) ++counts[static_cast<std::size_t>(found - separators.begin())];
-    if (c == '\n' && *std::max_element(counts.begin(), counts.end()) > 0) break;
-  }
-  return separators[static_cast<std::size_t>(std::max_element(counts.begin(), counts.end()) -
-                                             counts.begin())];
-}
-
 class CsvParser {
  public:
   CsvParser(std::string_view text, loader::Problems& problems)
@@ -125,6 +110,25 @@ class CsvParser {
 };
 
 }  // namespace
+
+char separator_of(std::string_view text) {
+  constexpr std::array separators{';', ',', '\t'};
+  std::array<std::size_t, separators.size()> counts{};
+  bool quoted = false;
+  for (const char c : text) {
+    if (c == '"') quoted = !quoted;
+    if (quoted) continue;
+    const auto* found = std::find(separators.begin(), separators.end(), c);
+    if (found != separators.end()) ++counts[static_cast<std::size_t>(found - separators.begin())];
+    if (c == '\n' && *std::max_element(counts.begin(), counts.end()) > 0) break;
+  }
+  return separators[static_cast<std::size_t>(std::max_element(counts.begin(), counts.end()) -
+                                             counts.begin())];
+}
+
+std::string_view text_at(const Row& row, std::size_t column) {
+  return column < row.size() ? std::string_view(row[column].text) : std::string_view{};
+}
 
 std::vector<Row> parse_csv(std::string_view text, loader::Problems& problems) {
   return CsvParser(text, problems).run();

@@ -18,8 +18,14 @@ struct Cell {
 };
 using Row = std::vector<Cell>;
 
+/// The one that the first line has most often, outside quotes.
+char separator_of(std::string_view text);
+
+/// Empty if the row ends before.
+std::string_view text_at(const Row& row, std::size_t column);
+
 /// All rows that are not empty; empty with the first error in `problems` if a quote is never closed, or text
-/// follows a closed one. The separator is the one that the first line has most often, outside quotes.
+/// follows a closed one.
 std::vector<Row> parse_csv(std::string_view text, loader::Problems& problems);
 
 /// The cells below this key are text, whatever they look like; `is_string`: those of a STRING.

@@ -18,6 +18,7 @@ using loader::is_digit;
 using loader::shown;
 
 constexpr std::size_t most_digits = 6;
+constexpr std::size_t digits_of_thousands = 3;
 
 bool has_digits_only(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), is_digit);
@@ -81,11 +82,24 @@ class AddressReader {
     if (text.size() > 2 && (text[1] == 'x' || text[1] == 'X') && is_digit(text[0])) return take_x(text);
     const std::size_t begin = text.find_first_of("0123456789");
     if (begin == 0 || begin == std::string_view::npos) return;
-    const TableWord word = read_table(without_blanks(text.substr(0, begin)), false);
+    const std::string_view named = without_blanks(text.substr(0, begin));
+    if (lower(named) == "fc") return take_function_code(text, begin);
+    const bool is_number = type_.type && *type_.type != Type::BOOL;
+    const TableWord word = read_table(named, false, is_number ? Holds::registers : Holds::anything);
     if (!word.table) return;
     cell_.table = word.table;
     text.remove_prefix(begin);
     if (whole_.back() == ']' && text.back() == ']') text.remove_suffix(1);
+  }
+
+  /// "FC3 30", "FC03:30"
+  void take_function_code(std::string_view& text, std::size_t begin) {
+    const std::size_t end = text.find_first_not_of("0123456789", begin);
+    if (end == std::string_view::npos || (text[end] != ' ' && text[end] != ':')) return;
+    const TableWord word = read_table(text.substr(0, end), true);
+    if (!word.table) return refuse(word.what, word.remedy);
+    cell_.table = word.table;
+    text = without_blanks(text.substr(end + 1));
   }
 
   /// "4x00020". "0x20" is hexadecimal where addresses are zero-based.
@@ -98,6 +112,13 @@ class AddressReader {
                     "read the file with --addressing modicon, or write the zero-based address");
     has_digit_of_table_ = true;
     text.remove_prefix(2);
+  }
+
+  /// "1,002" and "1.002"
+  void refuse_thousands(std::string_view before, std::string_view behind, const std::string& other) {
+    refuse(fmt::format("{} has two readings: {}{} with a sign between the thousands, or {}", shown(whole_),
+                       before, behind, other),
+           fmt::format("write {}{} if that is the address", before, behind));
   }
 
   /// "400020.03" and "400020:3" are a bit, "400030.20H" a text of 20 bytes.
@@ -113,14 +134,18 @@ class AddressReader {
     if (!number || (!has_digits_only(base) && !loader::parse_unsigned(base)))
       return refuse(is_no_address(), number_remedy());
     text = base;
+    if (!has_byte && behind.size() == digits_of_thousands)
+      return refuse_thousands(base, behind, fmt::format("the bit {} of register {}", *number, base));
     if (type_.type == Type::STRING)
       take_text(*number, has_byte, last);
     else if (has_byte)
       refuse(fmt::format("{} is a text of {} bytes, but its type is {}", shown(whole_), *number,
                          shown(type_.text)),
              "write the type STRING, or the address alone");
-    else if (type_.type && type_.type != Type::BOOL)
+    else if (type_.type && type_.type != Type::BOOL && *number <= 15)  // NOLINT: a register's last bit
       refuse(is_no_address(), fmt::format("a bit is type: BOOL, bit: {} at {}", *number, base));
+    else if (type_.type && type_.type != Type::BOOL)
+      refuse(is_no_address(), number_remedy());
     else if (*number > 15)  // NOLINT: a register's last bit
       refuse(fmt::format("{} has no bit: a register has the bits 0 to 15, not {}", shown(whole_), *number),
              "write one of them behind the point");
@@ -144,6 +169,8 @@ class AddressReader {
       if (at == std::string_view::npos || at == 0) continue;
       const std::string_view first = without_blanks(text.substr(0, at));
       std::string_view last = without_blanks(text.substr(at + between.size()));
+      if (between == "," && last.size() == digits_of_thousands && has_digits_only(last))
+        return refuse_thousands(first, last, fmt::format("the addresses {} and {}", first, last));
       const std::string_view before = whole_.substr(0, whole_.find(first));  // "HR20-HR21"
       if (!before.empty() && last.substr(0, before.size()) == before) last.remove_prefix(before.size());
       const auto begin = loader::parse_unsigned(first);

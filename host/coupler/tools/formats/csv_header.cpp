@@ -2,6 +2,7 @@
 #include "coupler/tools/formats/csv_header.hpp"
 
 #include <algorithm>
+#include <cstddef>
 
 #include <fmt/format.h>
 
@@ -26,17 +27,38 @@ std::vector<std::string_view> column_names() {
   return names;
 }
 
+/// Cells below such a heading are asked for, unless they decide.
+bool has_two_meanings(Reading reading) {
+  return reading == Reading::factor_or_divisor || reading == Reading::values_or_registers ||
+         reading == Reading::bytes_or_registers;
+}
+
 /// The heading's own meaning, or what --columns says of it.
 Column column_of(std::string_view heading, const ImportOptions& options) {
   Meaning own = meaning_of(heading);
   for (const auto& [column, given] : options.columns) {
     if (lower(given) != lower(heading)) continue;
+    if (column == "ignore") return {"", nullptr, Reading::plain, true};
     Meaning meaning = meaning_of(column);
-    const bool says_less = meaning.reading == Reading::plain && own.reading != Reading::factor_or_divisor;
+    const bool says_less = meaning.reading == Reading::plain && !has_two_meanings(own.reading);
     if (meaning.key != own.key || !says_less) own = std::move(meaning);
     return {std::move(own.key), nullptr, own.reading, true};
   }
   return {std::move(own.key), nullptr, own.reading, false};
+}
+
+/// "Unit" beside "Slave" is that of the value.
+void tell_units_from_slaves(std::vector<Column>& columns, const Row& header) {
+  const auto is_unit = [](const Column& column) { return column.key == "unit"; };
+  const auto is_units = [](const Column& column) { return column.key == "units"; };
+  if (std::count_if(columns.begin(), columns.end(), is_unit) < 2 ||
+      std::any_of(columns.begin(), columns.end(), is_units))
+    return;
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    if (is_unit(columns[i]) && lower(header[i].text) == "unit" && !columns[i].is_chosen) {
+      columns[i].key = "units";
+      return;
+    }
 }
 
 bool is_known(const Column& column) {
@@ -69,16 +91,13 @@ void report_unknown(const Cell& heading, const Column& column, Problems& problem
     problems.warning(
         heading.at,
         fmt::format("the column {} is not carried over: a point has no such key", shown(heading.text)),
-        near.empty() ? "see docs/import-export.md for the columns, or name it with --columns"
-                     : fmt::format("did you mean '{}'?", near));
+        "see docs/import-export.md for the columns, or name it with --columns");
 }
 
 /// Some address begins with a letter, as "HR20" does, which names a table.
 bool addresses_name_tables(const std::vector<Row>& rows, const std::vector<Column>& columns) {
-  const auto address = std::find_if(columns.begin(), columns.end(),
-                                    [](const Column& column) { return column.key == "address"; });
-  const auto at = static_cast<std::size_t>(address - columns.begin());
-  return address != columns.end() && std::any_of(rows.begin() + 1, rows.end(), [at](const Row& row) {
+  const std::size_t at = find_column(columns, "address");
+  return at != columns.size() && std::any_of(rows.begin() + 1, rows.end(), [at](const Row& row) {
            return at < row.size() && !row[at].text.empty() &&
                   (loader::is_letter(row[at].text[0]) || row[at].text[0] == '%');
          });
@@ -105,6 +124,12 @@ void need_columns(const std::vector<Row>& rows, const std::vector<Column>& colum
 
 }  // namespace
 
+std::size_t find_column(const std::vector<Column>& columns, std::string_view key) {
+  return static_cast<std::size_t>(
+      std::find_if(columns.begin(), columns.end(), [key](const Column& c) { return c.key == key; }) -
+      columns.begin());
+}
+
 std::vector<Column> read_header(const std::vector<Row>& rows, const ImportOptions& options,
                                 Problems& problems) {
   const Row& header = rows.front();
@@ -115,20 +140,23 @@ std::vector<Column> read_header(const std::vector<Row>& rows, const ImportOption
     return columns;
   }
   columns.reserve(header.size());
-  for (const Cell& cell : header) {
-    Column column = column_of(cell.text, options);
+  for (const Cell& cell : header) columns.push_back(column_of(cell.text, options));
+  tell_units_from_slaves(columns, header);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    Column& column = columns[i];
+    const Cell& cell = header[i];
     column.described = loader::find_key(column.key, any_point);
-    const bool twice = std::any_of(columns.begin(), columns.end(),
+    const auto here = columns.begin() + static_cast<std::ptrdiff_t>(i);
+    const bool twice = std::any_of(columns.begin(), here,
                                    [&](const Column& c) { return !c.key.empty() && c.key == column.key; });
     if (twice)
       problems.error(cell.at,
                      fmt::format("the column '{}' is there twice, here as {}", column.key, shown(cell.text)),
-                     "remove one, or give it another heading");
+                     fmt::format("remove one, or leave it out with --columns 'ignore={}'", cell.text));
     if (!is_known(column) && !column.key.empty()) {
       report_unknown(cell, column, problems);
       column.key.clear();
     }
-    columns.push_back(std::move(column));
   }
   need_columns(rows, columns, options, problems);
   for (const auto& [column, heading] : options.columns)

@@ -91,6 +91,10 @@ constexpr Heading headings[] = {
     {"scalefactor", "scale", Reading::factor_or_divisor},
     {"scaling", "scale", Reading::factor_or_divisor},
     {"scalingfactor", "scale", Reading::factor_or_divisor},
+    {"sf", "scale", Reading::factor_or_divisor},
+    {"skalierung", "scale", Reading::factor_or_divisor},
+    {"skalierungsfaktor", "scale", Reading::factor_or_divisor},
+    {"exponent", "scale", Reading::exponent},
     {"byteorder", "order"},
     {"slave", "unit"},
     {"slaveid", "unit"},
@@ -104,8 +108,13 @@ constexpr Heading headings[] = {
     {"registercount", "registers", Reading::registers},
     {"numberofregisters", "registers", Reading::registers},
     {"noofregisters", "registers", Reading::registers},
+    {"count", "count", Reading::values_or_registers},
+    {"anzahl", "count", Reading::values_or_registers},
+    {"length", "length", Reading::bytes_or_registers},
+    {"len", "length", Reading::bytes_or_registers},
     {"addressoffset", "address_offset", Reading::address_offset},
     {"scaleoffset", "scale_offset", Reading::scale_offset},
+    {"rawoffset", "scale_offset", Reading::raw_offset},
     {"rawlow", "raw_low", Reading::raw_low},
     {"rawhigh", "raw_high", Reading::raw_high},
     {"scaledlow", "scaled_low", Reading::scaled_low},
@@ -125,8 +134,10 @@ constexpr Heading headings[] = {
 }  // namespace
 
 Meaning meaning_of(std::string_view heading) {
-  // The map's own key is a factor, as `coupler export` writes it. Other programs' "Scale" may divide.
-  const std::string word = heading == "scale" ? "" : letters_and_digits(heading);
+  // The map's own keys, as `coupler export` writes them. Other programs' "Scale" may divide, and their
+  // "Count" be one of registers.
+  const bool is_own = heading == "scale" || heading == "count" || heading == "length";
+  const std::string word = is_own ? "" : letters_and_digits(heading);
   for (const auto& [said, key, reading] : headings)
     if (word == said) return {std::string(key), reading};
   std::string key = lower(heading);

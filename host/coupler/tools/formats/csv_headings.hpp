@@ -9,19 +9,24 @@ namespace coupler::formats {
 
 /// How the cells below a heading are read.
 enum class Reading {
-  plain,               ///< as the map's key is
-  function_codes,      ///< numbers are those, and name a table
-  divisor,             ///< value = register / cell
-  factor_or_divisor,   ///< makers' tables have both under this heading
-  may_be_written,      ///< yes or no, or a tick
-  may_not_be_written,  ///< the same
-  range,               ///< "0..100": `min` and `max`
-  registers,           ///< how many the value has
-  address_offset,      ///< is added to the address
-  scale_offset,        ///< is added to the scaled value
-  scaled_units,        ///< "0.1V": register x 0.1, in V
-  divided_units,       ///< "V*10": register / 10, in V
-  scaling,             ///< "Linear", "None": of the four below
+  plain,                ///< as the map's key is
+  function_codes,       ///< numbers are those, and name a table
+  divisor,              ///< value = register / cell
+  exponent,             ///< value = register x 10^cell
+  factor_or_divisor,    ///< makers' tables have both under this heading
+  may_be_written,       ///< yes or no, or a tick
+  may_not_be_written,   ///< the same
+  range,                ///< "0..100": `min` and `max`
+  registers,            ///< how many the value has
+  values_or_registers,  ///< "Count": of an array, or that of the registers
+  bytes_or_registers,   ///< "Length"
+  bytes,                ///< of a text; says nothing of other types
+  address_offset,       ///< is added to the address
+  scale_offset,         ///< is added to the scaled value
+  raw_offset,           ///< is added to the register, before the factor
+  scaled_units,         ///< "0.1V": register x 0.1, in V
+  divided_units,        ///< "V*10": register / 10, in V
+  scaling,              ///< "Linear", "None": of the four below
   raw_low,
   raw_high,
   scaled_low,

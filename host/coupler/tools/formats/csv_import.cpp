@@ -46,7 +46,7 @@ void add_on_shutdown(Entry& map, Problems& problems) {
 }  // namespace
 
 std::vector<ForeignUnit> read_csv(std::string_view text, const ImportOptions& options, Problems& problems) {
-  const std::vector<Row> rows = parse_csv(text, problems);
+  std::vector<Row> rows = parse_csv(text, problems);
   if (problems.has_errors()) return {};
   if (rows.size() < 2) {
     problems.error({1, 1}, "there are no points in the file",
@@ -57,7 +57,7 @@ std::vector<ForeignUnit> read_csv(std::string_view text, const ImportOptions& op
   if (problems.has_errors()) return {};
   decide_meanings(columns, rows, problems);
   if (problems.has_errors()) return {};
-  std::vector<ForeignUnit> units = read_rows(columns, options, rows, problems);
+  std::vector<ForeignUnit> units = read_rows(columns, options, rows, separator_of(text), problems);
   spell_names(units, problems);
   for (ForeignUnit& unit : units) add_on_shutdown(unit.map, problems);
   return units;

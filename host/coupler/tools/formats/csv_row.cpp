@@ -42,8 +42,13 @@ std::optional<Entry> structured(const Cell& cell, Problems& problems) {
 class TableReader {
  public:
   TableReader(const std::vector<Column>& columns, const ImportOptions& options, const std::vector<Row>& rows,
-              Problems& problems)
-      : columns_(columns), options_(options), rows_(rows), problems_(problems) {
+              char separator, Questions& questions, Problems& problems)
+      : columns_(columns),
+        options_(options),
+        rows_(rows),
+        separator_(separator),
+        questions_(questions),
+        problems_(problems) {
     const bool has_access = std::any_of(columns.begin(), columns.end(),
                                         [](const Column& column) { return column.key == "access"; });
     codes_are_access_ = !has_access && std::any_of(rows.begin() + 1, rows.end(), [this](const Row& row) {
@@ -73,6 +78,7 @@ class TableReader {
     add_access(cells, codes, point);
     add_size(cells, point);
     add_scale(cells, point);
+    add_range(cells, point);
     add_order(cells, point);
     Entry& map = unit_of(cells, units).map;
     if (options_.addressing == loader::Addressing::modicon) set(map, scalar("addressing", "modicon", map.at));
@@ -80,21 +86,10 @@ class TableReader {
     make_section(mapping, to_string(point.table), at).children.push_back(std::move(point.entry));
   }
 
-  /// Which register of several comes first is asked for once.
-  void ask_for_order() const {
-    if (without_order_.empty()) return;
-    const Cell& first = *without_order_.front();
-    const std::size_t more = without_order_.size() - 1;
-    problems_.error(
-        first.at,
-        fmt::format("{} has several registers{}, and the table does not say which comes first: the most "
-                    "significant one (ABCD), or the least (CDAB)",
-                    shown(first.text), more > 0 ? fmt::format(", as {} more have", more) : ""),
-        "say it for all of them with --order ABCD or --order CDAB, or in a column 'order'");
-  }
-
  private:
-  RowView view(const Row& row) const { return {rows_.front(), columns_, row, options_, problems_}; }
+  RowView view(const Row& row) const {
+    return {rows_.front(), columns_, row, options_, separator_, questions_, problems_};
+  }
 
   bool read_address(const RowView& row, RowPoint& point) const {
     const Cell* cell = row.cell("address");
@@ -160,7 +155,7 @@ class TableReader {
   TableWord table_word(const RowView& row, Holds holds) const {
     const Cell* given = row.cell("table");
     if (given == nullptr) return formats::read_table("", false);
-    const Column& column = columns_[static_cast<std::size_t>(given - row.row.data())];
+    const Column& column = row.column_of(*given);
     return formats::read_table(given->text, column.reading == Reading::function_codes, holds);
   }
 
@@ -168,6 +163,7 @@ class TableReader {
     const Column& column = columns_[i];
     const Cell& given = row.row[i];
     if (column.described == nullptr) return;
+    if (column.reading == Reading::bytes && point.type.type != codec::Type::STRING) return;
     const bool is_unticked = column.reading == Reading::may_be_written && is_writable(point.table);
     if (given.text.empty() && !is_unticked) return;
     const loader::Key* own = loader::find_key(column.key, loader::section_of(point.table));
@@ -191,8 +187,7 @@ class TableReader {
       problems_.warning(given.at, fmt::format("{} is read as {}", shown(given.text), entry.text),
                         "write a decimal point");
     }
-    if (column.reading == Reading::divisor)
-      if (const auto factor = factor_of(entry.text)) entry.text = fmt::format("{}", *factor);
+    if (column.key == "scale") entry.text = factor_text(entry.text, column.reading);
     point.entry.children.push_back(std::move(entry));
   }
 
@@ -222,26 +217,6 @@ class TableReader {
                       "add the function code that reads it, or a column 'access'");
   }
 
-  void add_order(const RowView& row, RowPoint& point) {
-    constexpr unsigned one_register = 16;
-    const Cell* type = row.cell("type");
-    if (type == nullptr || !point.type.type || holds_bits(point.table)) return;
-    if (codec::width(*point.type.type) <= one_register) return;
-    if (const Entry* given = loader::child(point.entry, "order")) {
-      if (!point.type.order.empty() && lower(given->text) != lower(point.type.order))
-        problems_.error(
-            type->at,
-            fmt::format("{} and the order {} contradict each other", shown(type->text), shown(given->text)),
-            "correct one of the two");
-      return;
-    }
-    const std::string& order = point.type.order.empty() ? options_.order : point.type.order;
-    if (order.empty())
-      without_order_.push_back(type);
-    else
-      point.entry.children.push_back(scalar("order", order, type->at));
-  }
-
   ForeignUnit& unit_of(const RowView& row, std::vector<ForeignUnit>& units) {
     std::optional<unsigned> wanted;
     if (const Cell* given = row.cell("unit")) {
@@ -263,8 +238,9 @@ class TableReader {
   const std::vector<Column>& columns_;
   const ImportOptions& options_;
   const std::vector<Row>& rows_;
+  char separator_;
+  Questions& questions_;
   Problems& problems_;
-  std::vector<const Cell*> without_order_;
   bool codes_are_access_ = false;  ///< some have one that writes, and nothing else says what may be written
 };
 
@@ -282,11 +258,12 @@ const Cell* RowView::cell(std::string_view key) const {
 }
 
 std::vector<ForeignUnit> read_rows(const std::vector<Column>& columns, const ImportOptions& options,
-                                   const std::vector<Row>& rows, Problems& problems) {
+                                   const std::vector<Row>& rows, char separator, Problems& problems) {
   std::vector<ForeignUnit> units;
-  TableReader reader(columns, options, rows, problems);
+  Questions questions;
+  TableReader reader(columns, options, rows, separator, questions, problems);
   for (auto row = rows.begin() + 1; row != rows.end(); ++row) reader.read(*row, units);
-  reader.ask_for_order();
+  questions.tell(problems);
   return units;
 }
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "coupler/codec/scale.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/tools/formats/csv_row.hpp"
+#include "coupler/tools/formats/csv_scan.hpp"
+#include "coupler/tools/formats/csv_units.hpp"
 #include "coupler/tools/formats/csv_values.hpp"
 #include "coupler/tools/formats/map_tree.hpp"
 
@@ -15,8 +18,47 @@ namespace {
 using loader::Entry;
 using loader::shown;
 
+/// The number without a sign that a scaled word is; nullopt if the type is none of them.
+std::optional<codec::Type> number_of_word(codec::Type type) {
+  switch (type) {
+    case codec::Type::BYTE: return codec::Type::USINT;
+    case codec::Type::WORD: return codec::Type::UINT;
+    case codec::Type::DWORD: return codec::Type::UDINT;
+    case codec::Type::LWORD: return codec::Type::ULINT;
+    default: return std::nullopt;
+  }
+}
+
 bool may_be_scaled(const RowPoint& point) {
-  return !holds_bits(point.table) && (!point.type.type || codec::is_scalable(*point.type.type));
+  const bool is_word = !holds_bits(point.table) && point.type.type && number_of_word(*point.type.type);
+  return point.is_number() || is_word;
+}
+
+/// A factor of 1 beside a text, a bit or a word says that there is none.
+void drop_factor_of_1(RowPoint& point) {
+  const Entry* scale = loader::child(point.entry, "scale");
+  if (scale == nullptr || point.is_number() || loader::parse_number(scale->text) != 1.0) return;
+  point.entry.children.erase(point.entry.children.begin() + (scale - point.entry.children.data()));
+}
+
+/// Behind "x10" there are none.
+void drop_empty_units(RowPoint& point) {
+  const Entry* units = loader::child(point.entry, "units");
+  if (units != nullptr && units->text.empty())
+    point.entry.children.erase(point.entry.children.begin() + (units - point.entry.children.data()));
+}
+
+void make_scaled_word_a_number(const RowView& row, RowPoint& point) {
+  const Cell* cell = row.cell("type");
+  Entry* type = find(point.entry, "type");
+  if (cell == nullptr || type == nullptr || holds_bits(point.table) || !point.type.type) return;
+  const auto number = number_of_word(*point.type.type);
+  if (!number || loader::child(point.entry, "scale") == nullptr) return;
+  point.type.type = number;
+  type->text = to_string(*number);
+  row.problems.warning(
+      cell->at, fmt::format("{} is scaled, so the point is {}, a number", shown(cell->text), type->text),
+      fmt::format("write the type {} if it has a sign", type->text.substr(1)));
 }
 
 bool is_yes(const Cell* cell) {
@@ -38,8 +80,18 @@ bool is_line(const RowView& row) {
                          "write Linear or None");
     return false;
   }
-  return row.at("scaling") == nullptr && row.cell("raw_low") != nullptr && row.cell("raw_high") != nullptr &&
-         row.cell("scaled_low") != nullptr && row.cell("scaled_high") != nullptr;
+  if (row.at("scaling") != nullptr) return false;
+  const Cell* some = nullptr;
+  bool has_all = true;
+  for (const std::string_view key : {"raw_low", "raw_high", "scaled_low", "scaled_high"}) {
+    const Cell* cell = row.cell(key);
+    if (cell != nullptr) some = cell;
+    has_all = has_all && cell != nullptr;
+  }
+  if (some != nullptr && !has_all)
+    row.problems.warning(some->at, "the value is not scaled, for only some of the four numbers are there",
+                         "write Raw Low, Raw High, Scaled Low and Scaled High, or empty them");
+  return has_all;
 }
 
 Entry pair_of(std::string_view key, const Entry& first, const Entry& second) {
@@ -89,20 +141,21 @@ void add_line(const RowView& row, RowPoint& point) {
   set(point.entry, std::move(scale));
 }
 
-/// What is told of units that hold a factor, and the ways to read them.
+/// Units that hold a factor, and the ways to read them.
 void ask_for_units(const RowView& row, const Cell& cell, const FactorAndUnits& units) {
-  const std::string heading = row.header[static_cast<std::size_t>(&cell - row.row.data())].text;
+  const std::string& heading = row.heading_of(cell);
   if (units.is_times)
-    row.problems.error(
-        cell.at,
+    row.questions.ask(
+        Question::units_times, cell,
         fmt::format("the units {} have two meanings: a register is multiplied by {}, or divided",
                     shown(cell.text), units.factor),
         fmt::format("write --columns 'scaled_units={0}' for the first, --columns 'divided_units={0}' for the "
-                    "second, or --columns 'units={0}' to take the text as it is",
+                    "second, or --columns 'units={0}' to take the text as it is; units such as 0.1V are a "
+                    "register x 0.1 with both of the first two",
                     heading));
   else
-    row.problems.error(
-        cell.at,
+    row.questions.ask(
+        Question::units, cell,
         fmt::format("the units {} have two meanings: a register x {} is in '{}', or the value stays as it is "
                     "in the register",
                     shown(cell.text), units.factor, units.units),
@@ -113,30 +166,49 @@ void ask_for_units(const RowView& row, const Cell& cell, const FactorAndUnits& u
 
 bool is_near(double a, double b) { return std::abs(a - b) <= std::abs(b) * 1e-9; }
 
+/// "1V" is V. Another number that is not understood is an error.
+void tell_unknown_units(const RowView& row, const Cell& cell, Entry& units) {
+  std::string_view rest = cell.text;
+  if (!has_number_apart(rest)) return;
+  if (take_word(rest, "1")) drop_blanks(rest);
+  if (!has_number_apart(rest))
+    units.text = rest;
+  else
+    row.problems.error(cell.at, fmt::format("the number in the units {} is not understood", shown(cell.text)),
+                       "write the units as in 0.1V, or alone, and the factor in a column 'factor'");
+}
+
 /// "0.1V": where a scale says the same, the rest is the unit.
 void split_units(const RowView& row, RowPoint& point) {
   const Cell* cell = row.cell("units");
   Entry* entry = find(point.entry, "units");
   if (cell == nullptr || entry == nullptr || !may_be_scaled(point)) return;
-  const Column& column = row.columns[static_cast<std::size_t>(cell - row.row.data())];
+  const Column& column = row.column_of(*cell);
+  const bool is_told = column.reading == Reading::scaled_units || column.reading == Reading::divided_units;
+  if (column.is_chosen && !is_told) return;
   const auto units = read_scaled_units(entry->text);
-  if (!units || (column.is_chosen && column.reading == Reading::plain)) return;
+  if (!units) {
+    if (is_told) tell_unknown_units(row, *cell, *entry);
+    return;
+  }
   const double factor = loader::parse_number(units->factor).value_or(1);
   Entry* scale = find(point.entry, "scale");
   const auto said = scale != nullptr ? loader::parse_number(scale->text) : std::nullopt;
-  const bool is_scaled = scale != nullptr && said.value_or(0) != 1;
-  const bool same = said && (is_near(*said, factor) || (units->is_times && is_near(*said, 1 / factor)));
-  if (is_scaled && !same) return;
-  if (!is_scaled) {
-    if (column.reading != Reading::scaled_units && column.reading != Reading::divided_units) {
-      entry->text = units->units;  // or the loader would warn of the same
-      return ask_for_units(row, *cell, *units);
-    }
-    const bool divides = column.reading == Reading::divided_units;
-    set(point.entry, scalar("scale", divides ? fmt::format("{}", 1 / factor) : units->factor, cell->at));
-    entry = find(point.entry, "units");
+  entry->text = units->units;  // or the loader would warn of the same
+  if (scale != nullptr && said.value_or(0) != 1) {
+    const bool same = said && (is_near(*said, factor) || (units->is_times && is_near(*said, 1 / factor)));
+    if (said && !same)
+      row.problems.error(
+          cell->at,
+          fmt::format("the units {} and the scale {} contradict each other", shown(cell->text), scale->text),
+          fmt::format("correct one of the two, or write --columns 'units={}' to take the units "
+                      "as they are",
+                      row.heading_of(*cell)));
+    return;
   }
-  entry->text = units->units;
+  if (!is_told) return ask_for_units(row, *cell, *units);
+  const bool divides = column.reading == Reading::divided_units && units->is_times;
+  set(point.entry, scalar("scale", divides ? fmt::format("{}", 1 / factor) : units->factor, cell->at));
 }
 
 void add_scale_offset(const RowView& row, RowPoint& point) {
@@ -151,44 +223,32 @@ void add_scale_offset(const RowView& row, RowPoint& point) {
         "write the number that is added to the scaled value, or nothing");
     return;
   }
-  if (loader::parse_number(*offset) == 0.0) return;
+  const double number = loader::parse_number(*offset).value_or(0);
+  if (number == 0) return;
+  const Column& column = row.column_of(*cell);
+  const double gain = scale != nullptr ? loader::parse_number(scale->text).value_or(1) : 1;
+  const bool is_raw = column.reading == Reading::raw_offset;
   Entry both = section("scale", cell->at);
   both.children = {
       scalar("gain", scale != nullptr ? scale->text : "1", scale != nullptr ? scale->at : cell->at),
-      scalar("offset", *offset, cell->at)};
+      scalar("offset", is_raw ? fmt::format("{}", number * gain) : *offset, cell->at)};
   set(point.entry, std::move(both));
-}
-
-void add_range(const RowView& row, RowPoint& point) {
-  const Cell* cell = row.cell("range");
-  if (cell == nullptr) return;
-  const auto ends = read_range(cell->text);
-  if (!ends)
-    row.problems.error(cell->at, fmt::format("{} is not a range of numbers", shown(cell->text)),
-                       "write it as in 0..100, or empty the cell");
-  else if (!may_be_scaled(point) && (ends->low != "0" || ends->high != "1"))
-    row.problems.warning(
-        cell->at, fmt::format("the range {} is not carried over: the type has none", shown(cell->text)),
-        "no action is needed if the device refuses other values");
-  if (!ends || !may_be_scaled(point)) return;
-  for (const auto& [key, text] : {std::pair("min", ends->low), std::pair("max", ends->high)}) {
-    const Entry* there = loader::child(point.entry, key);
-    if (there == nullptr)
-      point.entry.children.push_back(scalar(key, text, cell->at));
-    else if (loader::parse_number(there->text) != loader::parse_number(text))
-      row.problems.error(
-          cell->at, fmt::format("the range {} contradicts '{}: {}'", shown(cell->text), key, there->text),
-          "correct one of the two");
-  }
 }
 
 }  // namespace
 
+bool RowPoint::is_number() const {
+  if (holds_bits(table)) return false;
+  return type.type ? codec::is_scalable(*type.type) : !address.bit;
+}
+
 void add_scale(const RowView& row, RowPoint& point) {
+  drop_factor_of_1(point);
   add_line(row, point);
   split_units(row, point);
+  drop_empty_units(point);
   add_scale_offset(row, point);
-  add_range(row, point);
+  make_scaled_word_a_number(row, point);
 }
 
 }  // namespace coupler::formats

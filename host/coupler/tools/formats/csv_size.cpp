@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/lower.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/tools/formats/csv_row.hpp"
 #include "coupler/tools/formats/map_tree.hpp"
@@ -70,8 +71,8 @@ std::uint64_t length_of(const RowView& row, const RowPoint& point, std::uint64_t
   if (fits_characters != fits_registers) return fits_characters ? number : 2 * number;
   if (row.options.strings == "characters") return number;
   if (row.options.strings == "registers") return 2 * number;
-  row.problems.error(
-      type.at,
+  row.questions.ask(
+      Question::string_number, type,
       fmt::format("{0} has two meanings: {1} characters, or {1} registers, which hold {2}", shown(type.text),
                   number, 2 * number),
       fmt::format("say it for all such types with --strings characters or --strings registers; or write the "
@@ -110,7 +111,8 @@ void check_registers(const RowView& row, const RowPoint& point, std::uint64_t gi
       needed = count * std::max(codec::width(*point.type.type) / 16, 1U);
   }
   if (needed == given) return;
-  const std::string_view things = holds_bits(point.table) ? "bits" : "registers";
+  const std::string things =
+      fmt::format("{}{}", holds_bits(point.table) ? "bit" : "register", given == 1 ? "" : "s");
   row.problems.error(
       from.at, fmt::format("{} says {} {}, but the point has {}", shown(from.text), given, things, needed),
       "correct the type or this cell; the number of values of an array is 'count'");
@@ -135,6 +137,31 @@ void add_size(const RowView& row, RowPoint& point) {
     add_length(row, point, *address, registers ? registers : point.address.registers);
   if (registers) check_registers(row, point, *registers, *cell);
   if (point.address.registers) check_registers(row, point, *point.address.registers, *address);
+}
+
+void add_order(const RowView& row, RowPoint& point) {
+  constexpr unsigned one_register = 16;
+  const Cell* type = row.cell("type");
+  if (type == nullptr || !point.type.type || holds_bits(point.table)) return;
+  if (codec::width(*point.type.type) <= one_register) return;
+  if (const Entry* given = loader::child(point.entry, "order")) {
+    if (!point.type.order.empty() && lower(given->text) != lower(point.type.order))
+      row.problems.error(
+          type->at,
+          fmt::format("{} and the order {} contradict each other", shown(type->text), shown(given->text)),
+          "correct one of the two");
+    return;
+  }
+  const std::string& order = point.type.order.empty() ? row.options.order : point.type.order;
+  if (order.empty())
+    row.questions.ask(
+        Question::order, *type,
+        fmt::format("{} has several registers, and the table does not say which comes first: the "
+                    "most significant one (ABCD), or the least (CDAB)",
+                    shown(type->text)),
+        "say it for all of them with --order ABCD or --order CDAB, or in a column 'order'");
+  else
+    point.entry.children.push_back(scalar("order", order, type->at));
 }
 
 }  // namespace coupler::formats

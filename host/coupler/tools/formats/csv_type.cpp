@@ -35,14 +35,14 @@ std::string_view take_order(std::string_view text, TypeCell& cell) {
 }
 
 /// Takes "[8]" or "(8)" from the end, and 6 from that of "string6".
-std::string_view take_number(std::string_view text, TypeCell& cell) {
+std::string_view take_number_behind(std::string_view text, TypeCell& cell) {
   const bool closed = !text.empty() && (text.back() == ']' || text.back() == ')');
   const std::string_view inside = closed ? text.substr(0, text.size() - 1) : text;
   const std::string_view before = without_end(inside, "0123456789");
   const auto number = loader::parse_unsigned(inside.substr(before.size()));
   if (!number) return text;
   const std::string_view name = without_end(before, closed ? "[( " : " _-");
-  const auto type = codec::parse_type(name);
+  const auto type = lower(name) == "ascii" ? Type::STRING : codec::parse_type(name);
   if (type == Type::STRING || (closed && type == Type::CHAR)) {
     cell.type = Type::STRING;
     cell.number = number;
@@ -61,7 +61,7 @@ TypeCell read_type_cell(std::string_view text) {
   cell.type = codec::parse_type(text);
   if (!cell.type) {
     text = take_order(text, cell);
-    text = take_number(text, cell);
+    text = take_number_behind(text, cell);
     constexpr std::string_view array = "array";
     const std::string low = lower(text);
     if (low.size() > array.size() && low.compare(low.size() - array.size(), array.size(), array) == 0) {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cells that hold more than one number: "0..100", "0.1V".
+// Cells that hold more than one number: "0..100", "1/10".
 #pragma once
 
 #include <optional>
 #include <string>
 #include <string_view>
+
+#include "coupler/codec/format.hpp"
+#include "coupler/tools/formats/csv_headings.hpp"
 
 namespace coupler::formats {
 
@@ -18,16 +21,19 @@ std::optional<std::string> decimal(std::string_view text);
 struct Ends {
   std::string low;
   std::string high;
+  bool comma_may_be_of_thousands = false;  ///< "1,000"
+  bool point_may_be_of_thousands = false;  ///< "1.000"
 };
 std::optional<Ends> read_range(std::string_view text);
 
-/// "0.1V" is 0.1 and "V", "x10" is 10 and "", "%*10" is 10 and "%".
-struct FactorAndUnits {
-  std::string factor;
-  std::string units;
-  bool is_times = false;  ///< "x10", "%*10": the register is either the value times 10, or the other way
-};
-std::optional<FactorAndUnits> read_scaled_units(std::string_view text);
+/// All that the registers of the type can hold, which says nothing about the value.
+bool is_raw_range(const Ends& ends, codec::Type type);
+
+/// The factor that a cell of a scale means, as a map writes it; the cell if it is no number.
+std::string factor_text(std::string_view cell, Reading reading);
+
+/// "-", "N/A" and the like where a number may stand.
+bool says_nothing(std::string_view cell);
 
 /// The factor that does the same; nullopt if the cell is no number, or 0.
 std::optional<double> factor_of(std::string_view divisor);

@@ -29,6 +29,7 @@ constexpr Word accesses[] = {
     {"read", "read"},
     {"readonly", "read"},
     {"lesen", "read"},
+    {"lecture", "read"},
     {"nurlesen", "read"},
     {"w", "write"},
     {"wo", "write"},
@@ -41,6 +42,8 @@ constexpr Word accesses[] = {
     {"readwrite", "read_write"},
     {"readandwrite", "read_write"},
     {"writeread", "read_write"},
+    {"lectureecriture", "read_write"},
+    {"lecturecriture", "read_write"},  // "É" is no letter here
     {"lesenschreiben", "read_write"},
     {"lesenundschreiben", "read_write"},
     {"schreibenlesen", "read_write"},
@@ -56,12 +59,16 @@ constexpr NameOfTable table_words[] = {
     {"co", Table::coils},
     {"do", Table::coils},
     {"0x", Table::coils},
+    {"0xxxx", Table::coils},
+    {"0xxxxx", Table::coils},
     {"digitaloutput", Table::coils},
     {"discreteinput", Table::discrete_inputs},
     {"discreteinputs", Table::discrete_inputs},
     {"discrete", Table::discrete_inputs},
     {"di", Table::discrete_inputs},
     {"1x", Table::discrete_inputs},
+    {"1xxxx", Table::discrete_inputs},
+    {"1xxxxx", Table::discrete_inputs},
     {"digitalinput", Table::discrete_inputs},
     {"contact", Table::discrete_inputs},
     {"inputstatus", Table::discrete_inputs},
@@ -69,12 +76,16 @@ constexpr NameOfTable table_words[] = {
     {"inputregisters", Table::input_registers},
     {"ir", Table::input_registers},
     {"3x", Table::input_registers},
+    {"3xxxx", Table::input_registers},
+    {"3xxxxx", Table::input_registers},
     {"analoginput", Table::input_registers},
     {"holdingregister", Table::holding_registers},
     {"holdingregisters", Table::holding_registers},
     {"holding", Table::holding_registers},
     {"hr", Table::holding_registers},
     {"4x", Table::holding_registers},
+    {"4xxxx", Table::holding_registers},
+    {"4xxxxx", Table::holding_registers},
     {"analogoutput", Table::holding_registers},
 };
 
@@ -124,6 +135,14 @@ std::vector<std::string_view> numbers_of(std::string_view text) {
     if (!loader::parse_unsigned(numbers.back())) return {};
     text.remove_prefix(numbers.back().size());
   }
+}
+
+/// "Holding" of "Holding (FC03)"; the text itself if it does not end with brackets.
+std::string_view without_brackets_behind(std::string_view text) {
+  if (text.empty() || (text.back() != ')' && text.back() != ']')) return text;
+  const std::string_view before = text.substr(0, std::min(text.find_first_of("(["), text.size()));
+  const std::size_t last = before.find_last_not_of(' ');
+  return last == std::string_view::npos ? text : before.substr(0, last + 1);
 }
 
 /// Behind "FC" or "function code"; the text itself if neither stands there.
@@ -186,6 +205,17 @@ TableWord ambiguous(std::string_view text, std::uint64_t number) {
 }  // namespace
 
 TableWord read_table(std::string_view text, bool function_codes, Holds holds) {
+  if (const std::string_view outside = without_brackets_behind(text); outside.size() < text.size()) {
+    const TableWord first = read_table(outside, function_codes, holds);
+    const std::string_view inside = text.substr(text.find_first_of("([") + 1);
+    const TableWord second = read_table(inside.substr(0, inside.size() - 1), function_codes, holds);
+    if (first.table && second.table && *first.table != *second.table)
+      return {std::nullopt, Codes::none,
+              fmt::format("{} is {} and {}", loader::shown(text), to_string(*first.table),
+                          to_string(*second.table)),
+              "write the one that the device's manual means"};
+    if (first.table) return first;
+  }
   const std::string word = letters_and_digits(text);
   for (const auto& [said, meant] : table_words)
     if (word == said) return {meant, Codes::none, "", ""};
@@ -224,7 +254,8 @@ std::string_view access_of(std::string_view text, Reading reading) {
   const std::string word = lower(text) == "w/r" ? "rw" : letters_and_digits(text);
   for (const auto& [said, meant] : accesses)
     if (word == said) return meant;
-  return text;
+  const std::string_view outside = without_brackets_behind(text);
+  return outside.size() < text.size() ? access_of(outside, reading) : text;
 }
 
 }  // namespace coupler::formats

@@ -57,10 +57,11 @@ TEST(CsvMeanings, Units_with_the_factor_of_the_scale_are_the_units_alone) {
 
 TEST(CsvMeanings, The_order_of_several_registers_is_asked_for_once) {
   const std::string table = "table,name,address,type\nir,a,1,INT\nir,b,2,U32\nir,c,4,double\nir,d,8,Float\n";
-  EXPECT_EQ(Imported("csv", table).said,
-            "given:3:8: error: 'U32' has several registers, as 2 more have, and the table does not say which "
-            "comes first: the most significant one (ABCD), or the least (CDAB); say it for all of them with "
-            "--order ABCD or --order CDAB, or in a column 'order'\n");
+  EXPECT_EQ(
+      Imported("csv", table).said,
+      "given:3:8: error: 'U32' has several registers, and the table does not say which comes first: the "
+      "most significant one (ABCD), or the least (CDAB) (2 more ask the same); say it for all of them with "
+      "--order ABCD or --order CDAB, or in a column 'order'\n");
   formats::ImportOptions options{"m", {}};
   options.order = "ABCD";
   const Imported csv("csv", table, options);
@@ -87,7 +88,7 @@ TEST(CsvMeanings, Two_orders_of_one_point_are_told) {
 }
 
 TEST(CsvMeanings, A_number_behind_STRING_counts_characters_or_registers) {
-  for (const char* type : {"string[6]", "STRING(6)", "String 6", "char[6]", "str6"}) {
+  for (const char* type : {"string[6]", "STRING(6)", "String 6", "char[6]", "str6", "ASCII[6]"}) {
     const std::string table = std::string("table,name,address,type\nhr,a,1,") + type + "\n";
     EXPECT_THAT(
         Imported("csv", table).said,
@@ -118,9 +119,9 @@ TEST(CsvMeanings, An_offset_is_added_to_the_value_or_to_the_address) {
       "table,name,address,type,Faktor,Offset\nhr,a,100,INT,\"0,1\",-40\nhr,b,101,INT,,\n";
   EXPECT_THAT(
       Imported("csv", table).said,
-      HasSubstr("given:1:32: error: 'Offset' has two meanings: '-40' may be added to the scaled value, or "
-                "to the address; write --columns 'scale_offset=Offset' or --columns "
-                "'address_offset=Offset'"));
+      HasSubstr("given:1:32: error: 'Offset' has several meanings: '-40' may be added to the scaled value, "
+                "behind the factor; to the register, before the factor; or to the address; write --columns "
+                "'scale_offset=Offset', --columns 'raw_offset=Offset' or --columns 'address_offset=Offset'"));
   EXPECT_THAT(
       chosen(table, "scale_offset", "Offset"),
       HasSubstr("a: {address: 100, type: INT, scale: {gain: 0.1, offset: -40}}\n    b: {address: 101, "
@@ -140,9 +141,10 @@ TEST(CsvMeanings, Ranges_may_say_what_a_gain_is) {
   };
   const Imported divisor("csv", table("0 to 6553.5,10"));
   EXPECT_THAT(divisor.text(), HasSubstr("scale: 0.1, min: 0, max: 6553.5}"));
-  EXPECT_THAT(divisor.said,
-              HasSubstr("given:1:31: warning: 'Gain' is read as a divisor, for the ranges in the table "
-                        "fit only that; if that is wrong, write --columns 'scale=Gain'"));
+  EXPECT_THAT(
+      divisor.said,
+      HasSubstr("given:1:31: warning: 'Gain' is read as a divisor, for the ranges and units in the table "
+                "fit only that; if that is wrong, write --columns 'scale=Gain'"));
   EXPECT_THAT(Imported("csv", table("0 to 6553.5,0.1")).text(),
               HasSubstr("scale: 0.1, min: 0, max: 6553.5}"));
   for (const char* row : {"0 to 100,10", ",10", "0 to 0.55,10"})
@@ -166,9 +168,10 @@ TEST(CsvMeanings, What_may_be_written_is_known_in_many_words) {
     return Imported("csv", "table,name,address,type," + heading + "\nhr,a,1,INT," + cell + "\n").text();
   };
   for (const char* heading : {"Client Access", "R/W", "Access", "Lesen/Schreiben", "Zugriff"}) {
-    for (const char* cell : {"R/W", "RW", "Read/Write", "Lesen/Schreiben", "W/R", "R + W", "read & write"})
+    for (const char* cell : {"R/W", "RW", "Read/Write", "Read/Write (RW)", "Lecture/Écriture",
+                             "Lesen/Schreiben", "W/R", "R + W", "read & write"})
       EXPECT_THAT(access(heading, cell), HasSubstr("access: read_write}")) << heading << ' ' << cell;
-    for (const char* cell : {"RO", "R", "read-only", "Read Only", "nur lesen"})
+    for (const char* cell : {"RO", "R", "read-only", "Read Only", "nur lesen", "Lecture"})
       EXPECT_THAT(access(heading, cell), HasSubstr("access: read}")) << heading << ' ' << cell;
     for (const char* cell : {"WO", "W", "write-only"})
       EXPECT_THAT(access(heading, cell), HasSubstr("access: write}")) << heading << ' ' << cell;
@@ -181,7 +184,7 @@ TEST(CsvMeanings, The_number_of_registers_must_be_that_of_the_type) {
   const std::string head = "table,name,address,type,order,Quantity\n";
   EXPECT_EQ(Imported("csv", head + "hr,a,1,I32,ABCD,2\nhr,b,3,U16,,1\ncoils,c,1,,,1\n").said, "");
   EXPECT_THAT(Imported("csv", head + "hr,a,1,I32,ABCD,1\n").said,
-              HasSubstr("given:2:17: error: '1' says 1 registers, but the point has 2"));
+              HasSubstr("given:2:17: error: '1' says 1 register, but the point has 2"));
   EXPECT_THAT(Imported("csv", head + "hr,a,1,U16,,two\n").said,
               HasSubstr("'two' is not a number of registers"));
 }

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coupler/map/loader/scalar.hpp"
+#include "coupler/tools/formats/csv_row.hpp"
+#include "coupler/tools/formats/csv_values.hpp"
+#include "coupler/tools/formats/map_tree.hpp"
+
+namespace coupler::formats {
+namespace {
+
+using loader::Entry;
+using loader::shown;
+
+/// The two numbers; nullopt, with the reason told, if the cell says nothing of the value that a map can say.
+std::optional<Ends> ends_of(const RowView& row, const RowPoint& point, const Cell& cell) {
+  auto ends = read_range(cell.text);
+  const auto leave_out = [&](const char* why, const char* remedy) {
+    row.problems.warning(cell.at, fmt::format("the range {} is not carried over: {}", shown(cell.text), why),
+                         remedy);
+    return std::nullopt;
+  };
+  if (!ends)
+    return leave_out("it is not two numbers",
+                     "write it as in 0..100; numbers with names are 'values' in the map");
+  const bool is_open =
+      ends->comma_may_be_of_thousands || (row.separator == ';' && ends->point_may_be_of_thousands);
+  if (is_open) {
+    row.problems.error(cell.at,
+                       fmt::format("a number of the range {} has two readings: three digits behind a sign "
+                                   "are thousands, or decimals",
+                                   shown(cell.text)),
+                       fmt::format("write thousands without the sign, and decimals as in 1.5 or 1.50; or "
+                                   "leave the column out with --columns 'ignore={}'",
+                                   row.heading_of(cell)));
+    return std::nullopt;
+  }
+  if (point.type.type && is_raw_range(*ends, *point.type.type)) return std::nullopt;
+  if (point.is_number()) return ends;
+  if (ends->low == "0" && ends->high == "1") return std::nullopt;
+  return leave_out("the type has none", "no action is needed if the device refuses other values");
+}
+
+}  // namespace
+
+void add_range(const RowView& row, RowPoint& point) {
+  const Cell* cell = row.cell("range");
+  if (cell == nullptr) return;
+  const auto ends = ends_of(row, point, *cell);
+  if (!ends) return;
+  for (const auto& [key, text] : {std::pair("min", ends->low), std::pair("max", ends->high)}) {
+    const Entry* there = loader::child(point.entry, key);
+    if (there == nullptr)
+      point.entry.children.push_back(scalar(key, text, cell->at));
+    else if (loader::parse_number(there->text) != loader::parse_number(text))
+      row.problems.error(
+          cell->at, fmt::format("the range {} contradicts '{}: {}'", shown(cell->text), key, there->text),
+          "correct one of the two");
+  }
+}
+
+}  // namespace coupler::formats
