@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -45,25 +48,38 @@ void become_registers(Column& column) {
   column.reading = Reading::registers;
 }
 
-/// The number of registers between the row's address and the next one of its table; nullopt if none follows.
-std::optional<std::uint64_t> room_of(const std::vector<Column>& columns, const std::vector<Row>& rows,
-                                     const Row& row) {
-  const std::size_t address = find_column(columns, "address");
-  const auto begin = loader::parse_unsigned(text_at(row, address));
-  if (!begin) return std::nullopt;
-  std::optional<std::uint64_t> room;
-  for (auto other = rows.begin() + 1; other != rows.end(); ++other) {
-    const auto next = loader::parse_unsigned(text_at(*other, address));
-    if (!next || *next <= *begin) continue;
-    bool is_of_it = true;
-    for (const std::string_view key : {"table", "unit"}) {
-      const std::size_t i = find_column(columns, key);
-      is_of_it = is_of_it && text_at(*other, i) == text_at(row, i);
-    }
-    if (is_of_it) room = std::min(room.value_or(*next - *begin), *next - *begin);
+/// The addresses of each table of each unit.
+class Places {
+ public:
+  Places(const std::vector<Column>& columns, const std::vector<Row>& rows)
+      : address_(find_column(columns, "address")),
+        table_(find_column(columns, "table")),
+        unit_(find_column(columns, "unit")) {
+    for (auto row = rows.begin() + 1; row != rows.end(); ++row)
+      if (const auto address = loader::parse_unsigned(text_at(*row, address_)))
+        addresses_[table_of(*row)].insert(*address);
   }
-  return room;
-}
+
+  /// The number of registers between the row's address and the next one; nullopt if none follows.
+  std::optional<std::uint64_t> room_of(const Row& row) const {
+    const auto begin = loader::parse_unsigned(text_at(row, address_));
+    const auto found = addresses_.find(table_of(row));
+    if (!begin || found == addresses_.end()) return std::nullopt;
+    const auto next = found->second.upper_bound(*begin);
+    if (next == found->second.end()) return std::nullopt;
+    return *next - *begin;
+  }
+
+ private:
+  std::pair<std::string_view, std::string_view> table_of(const Row& row) const {
+    return {text_at(row, table_), text_at(row, unit_)};
+  }
+
+  std::size_t address_;
+  std::size_t table_;
+  std::size_t unit_;
+  std::map<std::pair<std::string_view, std::string_view>, std::set<std::uint64_t>> addresses_;
+};
 
 enum class LengthOf { bytes, registers, unknown };
 
@@ -79,12 +95,11 @@ LengthOf length_by_numbers(const std::vector<NumberOfRow>& numbers) {
   return are_bytes ? LengthOf::bytes : LengthOf::registers;
 }
 
-LengthOf length_by_addresses(const std::vector<NumberOfRow>& numbers, const std::vector<Column>& columns,
-                             const std::vector<Row>& rows) {
+LengthOf length_by_addresses(const std::vector<NumberOfRow>& numbers, const Places& places) {
   bool fills_registers = false;
   for (const NumberOfRow& each : numbers) {
     if (!each.is_text) continue;
-    const auto room = room_of(columns, rows, *each.row);
+    const auto room = places.room_of(*each.row);
     if (!room) continue;
     if (each.number > *room) return LengthOf::bytes;
     if (each.number < *room) return LengthOf::unknown;
@@ -99,24 +114,27 @@ void decide_count(std::vector<Column>& columns, const std::vector<Row>& rows, Pr
   const std::size_t i = find_column(columns, "count");
   if (i == columns.size() || columns[i].reading != Reading::values_or_registers) return;
   const auto numbers = numbers_in(columns, i, rows);
-  const auto is_all_registers = [](const NumberOfRow& each) {
+  const auto is_of_type = [](const NumberOfRow& each) {
     return each.is_text || each.number == each.registers;
   };
-  const auto is_open = [](const NumberOfRow& each) {
-    return each.number > 1 && (each.is_text || each.registers > 1);
+  const auto is_long = [](const NumberOfRow& each) { return each.registers > 1; };
+  const auto is_open = [&](const NumberOfRow& each) {
+    return each.number > 1 && (each.is_text || is_long(each));
   };
   const auto open = std::find_if(numbers.begin(), numbers.end(), is_open);
   columns[i].reading = Reading::plain;
   if (open == numbers.end()) return;
-  if (std::all_of(numbers.begin(), numbers.end(), is_all_registers)) return become_registers(columns[i]);
+  if (std::all_of(numbers.begin(), numbers.end(), is_of_type) &&
+      std::any_of(numbers.begin(), numbers.end(), is_long))
+    return become_registers(columns[i]);
   const Cell& heading = rows.front()[i];
-  problems.error(
-      heading.at,
-      fmt::format("{} has two meanings: {} beside {} is the number of values of an array, or of registers",
-                  shown(heading.text), open->number,
-                  shown(text_at(*open->row, find_column(columns, "type")))),
-      fmt::format("write --columns 'count={0}' for values, or --columns 'quantity={0}' for registers",
-                  heading.text));
+  const char* things = open->is_text ? "bytes" : "values of an array";
+  problems.error(heading.at,
+                 fmt::format("{} has two meanings: {} beside {} is the number of {}, or of registers",
+                             shown(heading.text), open->number,
+                             shown(text_at(*open->row, find_column(columns, "type"))), things),
+                 fmt::format("write --columns '{1}={0}' for {2}, or --columns 'quantity={0}' for registers",
+                             heading.text, open->is_text ? "length" : "count", things));
 }
 
 void decide_length(std::vector<Column>& columns, const std::vector<Row>& rows, Problems& problems) {
@@ -132,7 +150,7 @@ void decide_length(std::vector<Column>& columns, const std::vector<Row>& rows, P
     if (length == LengthOf::registers) become_registers(columns[i]);
     return;
   }
-  if (length == LengthOf::unknown) length = length_by_addresses(numbers, columns, rows);
+  if (length == LengthOf::unknown) length = length_by_addresses(numbers, Places(columns, rows));
   const Cell& heading = rows.front()[i];
   if (length == LengthOf::unknown) {
     problems.error(heading.at,

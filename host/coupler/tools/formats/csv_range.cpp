@@ -46,6 +46,20 @@ std::optional<Ends> ends_of(const RowView& row, const RowPoint& point, const Cel
 
 }  // namespace
 
+bool refuse_thousands(const RowView& row, const Cell& cell) {
+  const char sign = sign_of_thousands(cell.text);
+  const bool is_open = row.separator == ';' ? sign == '.' : sign == ',';
+  if (!is_open || !decimal(cell.text)) return false;
+  const std::size_t at = cell.text.find(sign);
+  const std::string before = cell.text.substr(0, at);
+  const std::string behind = cell.text.substr(at + 1);
+  row.problems.error(cell.at,
+                     fmt::format("{} has two readings: {}{}, with a sign between the thousands, or {}.{}",
+                                 shown(cell.text), before, behind, before, behind),
+                     fmt::format("write {}{}, or {}.{}0", before, behind, before, behind));
+  return true;
+}
+
 void add_range(const RowView& row, RowPoint& point) {
   const Cell* cell = row.cell("range");
   if (cell == nullptr) return;

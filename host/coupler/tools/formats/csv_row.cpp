@@ -182,6 +182,7 @@ class TableReader {
     if (column.key == "access") entry.text = access_of(given.text, column.reading);
     if (column.key == "type") entry.text = point.type.text;
     if (column.key == "address") entry.text = with_offset(row, point.address.text);
+    if (!text && refuse_thousands(row, given)) return;
     if (!text && has_decimal_comma(entry.text)) {
       std::replace(entry.text.begin(), entry.text.end(), ',', '.');
       problems_.warning(given.at, fmt::format("{} is read as {}", shown(given.text), entry.text),

@@ -63,6 +63,10 @@ void add_order(const RowView& row, RowPoint& point);
 /// `scale` and `units`, from all cells that a scale may stand in.
 void add_scale(const RowView& row, RowPoint& point);
 
+/// An error if the cell is a number such as "1,000", or in a file with decimal commas "1.000": it may be one
+/// of thousands, or have three decimals.
+bool refuse_thousands(const RowView& row, const Cell& cell);
+
 /// `min` and `max` of "0..100".
 void add_range(const RowView& row, RowPoint& point);
 

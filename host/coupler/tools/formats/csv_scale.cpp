@@ -108,6 +108,7 @@ Entry end_of_line(const RowView& row, std::string_view key) {
                       : row.cell("scaling") != nullptr ? *row.cell("scaling")
                                                        : row.row.front();
   const auto number = cell != nullptr ? decimal(cell->text) : std::nullopt;
+  if (number) refuse_thousands(row, place);
   if (!number)
     row.problems.error(
         place.at,
@@ -213,7 +214,7 @@ void split_units(const RowView& row, RowPoint& point) {
 
 void add_scale_offset(const RowView& row, RowPoint& point) {
   const Cell* cell = row.cell("scale_offset");
-  if (cell == nullptr) return;
+  if (cell == nullptr || refuse_thousands(row, *cell)) return;
   const auto offset = decimal(cell->text);
   const Entry* scale = loader::child(point.entry, "scale");
   if (!offset || (scale != nullptr && scale->kind != Entry::Kind::scalar)) {

@@ -34,14 +34,6 @@ bool take_separator(std::string_view& text) {
   return false;
 }
 
-/// The sign with three digits behind it, which may separate thousands or decimals; '\0' if there is none.
-char sign_of_thousands(std::string_view number) {
-  const std::size_t sign = number.find_first_of(".,");
-  if (sign == std::string_view::npos || number.size() - sign != 4) return '\0';
-  const bool is_below_one = number.substr(0, sign).find_first_of("123456789") == std::string_view::npos;
-  return is_below_one ? '\0' : number[sign];
-}
-
 std::optional<std::string> take_end(std::string_view& text, Ends& ends) {
   const std::string_view whole = text;
   auto number = take_number(text);
@@ -52,6 +44,13 @@ std::optional<std::string> take_end(std::string_view& text, Ends& ends) {
 }
 
 }  // namespace
+
+char sign_of_thousands(std::string_view number) {
+  const std::size_t sign = number.find_first_of(".,");
+  if (sign == std::string_view::npos || number.size() - sign != 4) return '\0';
+  const bool is_below_one = number.substr(0, sign).find_first_of("123456789") == std::string_view::npos;
+  return is_below_one ? '\0' : number[sign];
+}
 
 bool has_decimal_comma(std::string_view text) {
   const std::size_t comma = text.find(',');

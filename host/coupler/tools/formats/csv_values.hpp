@@ -11,6 +11,9 @@
 
 namespace coupler::formats {
 
+/// The sign of "1,000" or "1.000", which may separate thousands or decimals; '\0' if there is no such sign.
+char sign_of_thousands(std::string_view number);
+
 /// "0,5" for 0.5.
 bool has_decimal_comma(std::string_view text);
 

@@ -139,7 +139,8 @@ std::vector<std::string_view> numbers_of(std::string_view text) {
 
 /// "Holding" of "Holding (FC03)"; the text itself if it does not end with brackets.
 std::string_view without_brackets_behind(std::string_view text) {
-  if (text.empty() || (text.back() != ')' && text.back() != ']')) return text;
+  constexpr std::size_t longest = 100;  // brackets in brackets are read one by one
+  if (text.empty() || text.size() > longest || (text.back() != ')' && text.back() != ']')) return text;
   const std::string_view before = text.substr(0, std::min(text.find_first_of("(["), text.size()));
   const std::size_t last = before.find_last_not_of(' ');
   return last == std::string_view::npos ? text : before.substr(0, last + 1);

@@ -42,8 +42,11 @@ std::optional<int> line_of_nested_key(std::string_view text) {
     rest.remove_prefix(std::min(line.size() + 1, rest.size()));
     const std::size_t colon = line.find(':');
     const bool is_below = !line.empty() && (line[0] == ' ' || line[0] == '\t');
-    if (is_below && colon != std::string_view::npos && is_modbus_key(without_quotes(line.substr(0, colon))))
-      return number;
+    if (!is_below || colon == std::string_view::npos) continue;
+    const std::string_view value = without_quotes(line.substr(colon + 1));
+    const bool may_be_hubs =
+        value.empty() || std::string_view("#[{!&*").find(value[0]) != std::string_view::npos;
+    if (may_be_hubs && is_modbus_key(without_quotes(line.substr(0, colon)))) return number;
   }
   return std::nullopt;
 }

@@ -60,6 +60,22 @@ TEST(CsvNumbers, Thousands_in_a_range_are_asked_for) {
   EXPECT_THAT(range("0,1,2", ','), HasSubstr("given:2:13: warning: the range '0,1,2' is not carried over"));
 }
 
+TEST(CsvNumbers, Thousands_in_any_number_are_asked_for) {
+  for (const char* heading : {"Max", "Factor", "Raw offset"}) {
+    const std::string column = heading;
+    EXPECT_THAT(
+        made_of("table,name,address,type," + column + "\nhr,a,1,INT,\"1,000\"\n"),
+        HasSubstr("given:2:12: error: '1,000' has two readings: 1000, with a sign between the thousands, or "
+                  "1.000; write 1000, or 1.0000"))
+        << heading;
+    EXPECT_THAT(made_of("table;name;address;type;" + column + "\nhr;a;1;REAL;1.000\n"),
+                HasSubstr("'1.000' has two readings"));
+    EXPECT_THAT(made_of("table,name,address,type," + column + "\nhr,a,1,REAL,1.250\n"), HasSubstr("1.25"));
+    EXPECT_THAT(made_of("table;name;address;type;" + column + "\nhr;a;1;REAL;0.125\n"), HasSubstr("0.125"));
+    EXPECT_THAT(made_of("table;name;address;type;" + column + "\nhr;a;1;REAL;1,250\n"), HasSubstr("1.25"));
+  }
+}
+
 TEST(CsvNumbers, An_exponent_of_ten_is_the_third_reading_of_a_scale_factor) {
   const std::string table =
       "table,name,address,type,Scale Factor\nhr,a,1,INT,-1\nhr,b,2,UINT,-2\nhr,c,3,INT,0\n";
@@ -101,11 +117,16 @@ TEST(CsvNumbers, A_count_that_every_type_fits_is_that_of_registers) {
   EXPECT_THAT(made, HasSubstr("a: {address: 1, type: UDINT, order: ABCD}"));
   EXPECT_THAT(made, Not(HasSubstr("count")));
   EXPECT_THAT(made_of(head + "hr,a,1,U16,8\n"), HasSubstr("count: 8"));
+  EXPECT_THAT(made_of(head + "hr,a,1,U32,2\nhr,b,3,STR,4\n"), HasSubstr("length: 8"));
+  EXPECT_THAT(
+      made_of(head + "hr,a,1,STR,8\nhr,b,9,U16,1\n"),
+      HasSubstr("'Count' has two meanings: 8 beside 'STR' is the number of bytes, or of registers; write "
+                "--columns 'length=Count' for bytes, or --columns 'quantity=Count' for registers"));
   const std::string open = head + "hr,a,1,U32,4\nhr,b,9,U16,1\n";
   EXPECT_THAT(made_of(open),
               HasSubstr("given:1:25: error: 'Count' has two meanings: 4 beside 'U32' is the number of "
                         "values of an array, or of registers; write --columns 'count=Count' for "
-                        "values, or --columns 'quantity=Count' for registers"));
+                        "values of an array, or --columns 'quantity=Count' for registers"));
   EXPECT_THAT(made_of(open, {{"count", "Count"}}), HasSubstr("count: 4"));
   EXPECT_THAT(made_of("table,name,address,type,count\nhr,a,1,U32,2\n"),
               HasSubstr("count: 2"));  // the map's key

@@ -204,6 +204,14 @@ TEST(HomeAssistantYaml, Hubs_of_a_package_are_found) {
               HasSubstr("given:4:1: warning: the hubs of this 'modbus:' below another key are not read"));
 }
 
+TEST(HomeAssistantYaml, Another_key_called_modbus_is_no_package) {
+  EXPECT_EQ(Imported("home-assistant",
+                     "logger:\n  logs:\n    modbus: debug\nmodbus:\n- {type: tcp, host: plc, sensors: "
+                     "[{name: s, address: 1, input_type: input}]}\n")
+                .said,
+            "");
+}
+
 TEST(HomeAssistantYaml, Names_are_spelt_in_ASCII) {
   const Imported imported("home-assistant",
                           "modbus:\n- {name: Wärmepumpe, type: tcp, host: plc, sensors: [{name: Ölstand, "
