@@ -134,7 +134,7 @@ void decide_count(std::vector<Column>& columns, const std::vector<Row>& rows, Pr
                              shown(heading.text), open->number,
                              shown(text_at(*open->row, find_column(columns, "type"))), things),
                  fmt::format("write --columns '{1}={0}' for {2}, or --columns 'quantity={0}' for registers",
-                             heading.text, open->is_text ? "length" : "count", things));
+                             for_columns(heading.text), open->is_text ? "length" : "count", things));
 }
 
 void decide_length(std::vector<Column>& columns, const std::vector<Row>& rows, Problems& problems) {
@@ -159,7 +159,7 @@ void decide_length(std::vector<Column>& columns, const std::vector<Row>& rows, P
                                shown(heading.text), text->number, 2 * text->number),
                    fmt::format("write --columns 'length={0}' for bytes, or --columns 'quantity={0}' for "
                                "registers",
-                               heading.text));
+                               for_columns(heading.text)));
     return;
   }
   const bool are_bytes = length == LengthOf::bytes;
@@ -167,7 +167,7 @@ void decide_length(std::vector<Column>& columns, const std::vector<Row>& rows, P
                    fmt::format("{} is read as the number of {}, for types and addresses fit only that",
                                shown(heading.text), are_bytes ? "bytes" : "registers"),
                    fmt::format("if that is wrong, write --columns '{}={}'", are_bytes ? "quantity" : "length",
-                               heading.text));
+                               for_columns(heading.text)));
   if (!are_bytes) become_registers(columns[i]);
 }
 

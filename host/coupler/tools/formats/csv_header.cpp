@@ -33,11 +33,15 @@ bool has_two_meanings(Reading reading) {
          reading == Reading::bytes_or_registers;
 }
 
+bool is_same_heading(std::string_view a, std::string_view b) {
+  return lower(in_one_line(a)) == lower(in_one_line(b));
+}
+
 /// The heading's own meaning, or what --columns says of it.
 Column column_of(std::string_view heading, const ImportOptions& options) {
   Meaning own = meaning_of(heading);
   for (const auto& [column, given] : options.columns) {
-    if (lower(given) != lower(heading)) continue;
+    if (!is_same_heading(given, heading)) continue;
     if (column == "ignore") return {"", nullptr, Reading::plain, true};
     Meaning meaning = meaning_of(column);
     const bool says_less = meaning.reading == Reading::plain && !has_two_meanings(own.reading);
@@ -147,12 +151,17 @@ std::vector<Column> read_header(const std::vector<Row>& rows, const ImportOption
     const Cell& cell = header[i];
     column.described = loader::find_key(column.key, any_point);
     const auto here = columns.begin() + static_cast<std::ptrdiff_t>(i);
-    const bool twice = std::any_of(columns.begin(), here,
-                                   [&](const Column& c) { return !c.key.empty() && c.key == column.key; });
-    if (twice)
+    const auto other = std::find_if(columns.begin(), here,
+                                    [&](const Column& c) { return !c.key.empty() && c.key == column.key; });
+    if (other != here) {
+      const Cell& first = header[static_cast<std::size_t>(other - columns.begin())];
       problems.error(cell.at,
                      fmt::format("the column '{}' is there twice, here as {}", column.key, shown(cell.text)),
-                     fmt::format("remove one, or leave it out with --columns 'ignore={}'", cell.text));
+                     is_same_heading(first.text, cell.text)
+                         ? "remove one, or give it another heading"
+                         : fmt::format("remove one, or leave it out with --columns 'ignore={}'",
+                                       for_columns(cell.text)));
+    }
     if (!is_known(column) && !column.key.empty()) {
       report_unknown(cell, column, problems);
       column.key.clear();
@@ -161,7 +170,7 @@ std::vector<Column> read_header(const std::vector<Row>& rows, const ImportOption
   need_columns(rows, columns, options, problems);
   for (const auto& [column, heading] : options.columns)
     if (std::none_of(header.begin(), header.end(),
-                     [&, &name = heading](const Cell& c) { return lower(c.text) == lower(name); }))
+                     [&, &name = heading](const Cell& c) { return is_same_heading(c.text, name); }))
       problems.error(header.front().at, fmt::format("--columns: there is no heading {}", shown(heading)),
                      "write it as the file does");
   return columns;

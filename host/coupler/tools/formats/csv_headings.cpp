@@ -145,6 +145,23 @@ Meaning meaning_of(std::string_view heading) {
   return {std::move(key), Reading::plain};
 }
 
+std::string in_one_line(std::string_view heading) {
+  std::string line;
+  for (const char c : heading) {
+    const bool is_blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
+    if (!is_blank)
+      line += c;
+    else if (!line.empty() && line.back() != ' ')
+      line += ' ';
+  }
+  return line;
+}
+
+std::string for_columns(std::string_view heading) {
+  const std::string line = in_one_line(heading);
+  return line.find(',') == std::string::npos ? line : '"' + line + '"';
+}
+
 std::string letters_and_digits(std::string_view text) {
   std::string word = lower(text);
   word.erase(std::remove_if(word.begin(), word.end(),

@@ -46,6 +46,12 @@ Meaning meaning_of(std::string_view heading);
 constexpr std::string_view exported_columns[] = {"table", "name",   "address", "type",
                                                  "order", "access", "units",   "description"};
 
+/// The heading in one line with single blanks: "Scale factor", however the file breaks it.
+std::string in_one_line(std::string_view heading);
+
+/// As --columns takes it: in one line, and in quotes if it has a comma.
+std::string for_columns(std::string_view heading);
+
 /// "R/W" -> "rw", "Data type" -> "datatype"
 std::string letters_and_digits(std::string_view text);
 

@@ -155,14 +155,14 @@ void decide_factor(std::vector<Column>& columns, std::size_t i, const std::vecto
                     shown(heading.text), shown((*first)[i].text), (*first)[i].text),
         fmt::format("write --columns 'exponent={0}' if it is an exponent of ten, --columns 'scale={0}' if it "
                     "is a factor, or --columns 'divisor={0}'",
-                    heading.text));
+                    for_columns(heading.text)));
   } else if (possible.factor != possible.divisor) {
     columns[i].reading = possible.factor ? Reading::plain : Reading::divisor;
     problems.warning(heading.at,
                      fmt::format("{} is read as a {}, for the ranges and units in the table fit only that",
                                  shown(heading.text), possible.factor ? "factor" : "divisor"),
                      fmt::format("if that is wrong, write --columns '{}={}'",
-                                 possible.factor ? "divisor" : "scale", heading.text));
+                                 possible.factor ? "divisor" : "scale", for_columns(heading.text)));
   } else {
     problems.error(
         heading.at,
@@ -170,7 +170,7 @@ void decide_factor(std::vector<Column>& columns, std::size_t i, const std::vecto
                     shown(heading.text), shown((*first)[i].text)),
         fmt::format("write --columns 'scale={0}' if it is a factor, or --columns 'divisor={0}'; the ranges "
                     "and units in the table show which",
-                    heading.text));
+                    for_columns(heading.text)));
   }
 }
 
@@ -197,7 +197,7 @@ void decide_offset(std::vector<Column>& columns, const std::vector<Row>& rows, P
                   shown(heading.text), shown((*differs)[i].text)),
       fmt::format("write --columns 'scale_offset={0}', --columns 'raw_offset={0}' or --columns "
                   "'address_offset={0}'",
-                  heading.text));
+                  for_columns(heading.text)));
 }
 
 /// An offset of the address may be in the address already.
@@ -210,12 +210,12 @@ void decide_address_offset(const std::vector<Column>& columns, const std::vector
   });
   if (differs == rows.end()) return;
   const Cell& heading = rows.front()[i];
-  problems.error(
-      heading.at,
-      fmt::format("{} has two meanings: {} is to be added to the address, or it is in the address "
-                  "already",
-                  shown(heading.text), shown((*differs)[i].text)),
-      fmt::format("write --columns 'address_offset={0}' to add it, or --columns 'ignore={0}'", heading.text));
+  problems.error(heading.at,
+                 fmt::format("{} has two meanings: {} is to be added to the address, or it is in the address "
+                             "already",
+                             shown(heading.text), shown((*differs)[i].text)),
+                 fmt::format("write --columns 'address_offset={0}' to add it, or --columns 'ignore={0}'",
+                             for_columns(heading.text)));
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ class RowView {
   const Cell* cell(std::string_view key) const;
 
   const Column& column_of(const Cell& of_row) const { return columns[index_of(of_row)]; }
-  const std::string& heading_of(const Cell& of_row) const { return header[index_of(of_row)].text; }
+  /// As --columns takes it.
+  std::string heading_of(const Cell& of_row) const { return for_columns(header[index_of(of_row)].text); }
 
  private:
   std::size_t index_of(const Cell& of_row) const { return static_cast<std::size_t>(&of_row - row.data()); }

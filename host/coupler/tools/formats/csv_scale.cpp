@@ -144,7 +144,7 @@ void add_line(const RowView& row, RowPoint& point) {
 
 /// Units that hold a factor, and the ways to read them.
 void ask_for_units(const RowView& row, const Cell& cell, const FactorAndUnits& units) {
-  const std::string& heading = row.heading_of(cell);
+  const std::string heading = row.heading_of(cell);
   if (units.is_times)
     row.questions.ask(
         Question::units_times, cell,

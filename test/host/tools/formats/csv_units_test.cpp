@@ -102,6 +102,21 @@ TEST(CsvUnits, Units_may_say_what_a_gain_is) {
   EXPECT_THAT(with_units("ir,a,1,UINT,x10,10\n", "", ",Gain"), HasSubstr("'Gain' has two meanings"));
 }
 
+TEST(CsvUnits, What_a_message_tells_to_write_is_what_the_option_takes) {
+  EXPECT_THAT(Imported("csv", "table,name,address,type,\"Scale, factor\"\nir,a,1,UINT,10\n").said,
+              HasSubstr("write --columns 'scale=\"Scale, factor\"' if"));
+  EXPECT_THAT(Imported("csv", "table,name,address,type,Unit,\"Scale\nfactor\"\nir,a,1,UINT,V,10\n").said,
+              HasSubstr("write --columns 'scale=Scale factor'"));
+  formats::ImportOptions options{"m", {}};
+  options.columns = {{"scale", "Scale factor"}};
+  EXPECT_THAT(Imported("csv", "table,name,address,type,\"Scale\nfactor\"\nir,a,1,UINT,10\n", options).text(),
+              HasSubstr("scale: 10}"));
+  EXPECT_THAT(Imported("csv", "table,name,address,type,Description,Remarks\nir,a,1,UINT,x,y\n").said,
+              HasSubstr("remove one, or leave it out with --columns 'ignore=Remarks'"));
+  EXPECT_THAT(Imported("csv", "table,name,address,type,Units,Units\nir,a,1,UINT,x,y\n").said,
+              HasSubstr("remove one, or give it another heading"));
+}
+
 TEST(CsvUnits, Unit_beside_the_unit_id_is_that_of_the_value) {
   const Imported csv("csv", "table,name,address,type,Unit,Slave\nir,a,1,UINT,V,7\n");
   EXPECT_THAT(csv.text(),
