@@ -127,10 +127,9 @@ std::string factor_text(std::string_view cell, Reading reading) {
 
 bool says_nothing(std::string_view cell) {
   const std::string word = lower(cell);
-  for (const std::string_view nothing :
-       {"", "-", "--", "---", "\u2013", "\u2014", "n/a", "na", "n.a.", "none"})
+  for (const std::string_view nothing : {"", "-", "--", "---", "\u2013", "\u2014", "n/a", "n.a.", "none"})
     if (word == nothing) return true;
-  return false;
+  return cell == "NA";  // "nA" are units
 }
 
 std::optional<double> factor_of(std::string_view divisor) {

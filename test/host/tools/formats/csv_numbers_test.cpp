@@ -165,6 +165,8 @@ TEST(CsvNumbers, Where_a_number_may_stand_some_words_are_an_empty_cell) {
     EXPECT_THAT(made_of("table,name,address,type\nhr,a," + word + ",INT\n"),
                 HasSubstr("given:2:6: error: the point has no address"));
   }
+  EXPECT_THAT(made_of("table,name,address,type,Unit\nhr,a,1,INT,nA\nhr,b,2,INT,NA\n"),
+              HasSubstr("a: {address: 1, type: INT, units: nA}\n    b: {address: 2, type: INT}"));
   EXPECT_THAT(made_of("table,name,address,type,Scaling\nhr,a,1,INT,0.1\nhr,b,2,INT,N/A\n"),
               HasSubstr("'Scaling' has two meanings: with '0.1'"));
   EXPECT_THAT(
