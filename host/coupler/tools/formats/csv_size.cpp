@@ -6,6 +6,7 @@
 #include "coupler/base/lower.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/tools/formats/csv_row.hpp"
+#include "coupler/tools/formats/csv_scan.hpp"
 #include "coupler/tools/formats/map_tree.hpp"
 
 namespace coupler::formats {
@@ -46,6 +47,28 @@ void add_bit(const RowView& row, RowPoint& point, const Cell& address) {
   if (loader::child(point.entry, "type") == nullptr)
     point.entry.children.push_back(scalar("type", "BOOL", address.at));
   say(row, point.entry, "bit", *point.address.bit, address);
+}
+
+/// A column "Bits" has the width of the type in makers' tables, which the type says already; or "8-11".
+void read_bits(RowPoint& point) {
+  const auto found = std::find_if(point.entry.children.begin(), point.entry.children.end(),
+                                  [](const Entry& each) { return each.key == "bits"; });
+  if (found == point.entry.children.end() || found->kind != Entry::Kind::scalar) return;
+  std::string_view rest = found->text;
+  const auto first = take_number(rest);
+  if (!first) return;
+  if (rest.empty()) {
+    const unsigned width = point.type.type ? codec::width(*point.type.type) : 0;
+    if (loader::parse_unsigned(*first) == width) point.entry.children.erase(found);
+    return;
+  }
+  drop_blanks(rest);
+  if (!take_word(rest, "-") && !take_word(rest, "..") && !take_word(rest, "to")) return;
+  drop_blanks(rest);
+  const auto last = take_number(rest);
+  if (!last || !rest.empty()) return;
+  found->kind = Entry::Kind::list;
+  found->children = {scalar("", *first, found->at), scalar("", *last, found->at)};
 }
 
 void add_count(const RowView& row, RowPoint& point, const Cell& address) {
@@ -132,6 +155,7 @@ void add_size(const RowView& row, RowPoint& point) {
                          "write how many the value has, or nothing");
   }
   add_bit(row, point, *address);
+  read_bits(point);
   add_count(row, point, *address);
   if (point.type.type == Type::STRING)
     add_length(row, point, *address, registers ? registers : point.address.registers);

@@ -40,6 +40,17 @@ TEST(CsvForeign, An_address_may_have_a_bit_a_length_a_count_or_its_last_register
   EXPECT_THAT(point_at("40001-40003", "STRING"), HasSubstr("a: {address: 40001, type: STRING, length: 6}"));
 }
 
+TEST(CsvForeign, A_column_Bits_is_the_width_of_the_type_or_says_which_bits) {
+  const Imported csv("csv",
+                     "table,name,address,type,Bits\nholding,a,1,UINT,16\nholding,b,2,UINT,8-11\n"
+                     "holding,c,3,INT,16\nholding,d,4,WORD,0 .. 3\n");
+  ASSERT_FALSE(csv.result.maps.empty()) << csv.said;
+  EXPECT_THAT(csv.text(), HasSubstr("a: {address: 1, type: UINT}"));
+  EXPECT_THAT(csv.text(), HasSubstr("b: {address: 2, type: UINT, bits: [8, 11]}"));
+  EXPECT_THAT(csv.text(), HasSubstr("c: {address: 3, type: INT}"));
+  EXPECT_THAT(csv.text(), HasSubstr("d: {address: 4, type: WORD, bits: [0, 3]}"));
+}
+
 TEST(CsvForeign, An_address_may_name_its_table) {
   EXPECT_THAT(point_at("4x00020", "INT"),
               HasSubstr("holding_registers:\n    a: {address: 400020, type: INT}"));
