@@ -86,9 +86,7 @@ class Channel {
 
   /// Discards bytes that came while no request was outstanding. An error means that the connection has ended
   /// or must not be used any more.
-  virtual Result<> discard_unasked() {
-    return fail(TransportFailure{"the connection has ended"});
-  }
+  virtual Result<> discard_unasked() { return fail(TransportFailure{"the connection has ended"}); }
   /// Returns when bytes have come, when the connection has ended, after a call of `wakeup` or `interrupted`,
   /// or at `time`. On a bus no bytes end it.
   virtual Woken wait_until(Time time, Wakeup& wakeup, const Event& interrupted) {
