@@ -129,6 +129,8 @@ def nobody_looks_nobody_reads(coupler, map_file, checks):
         checks.equal("requests before there is a page", device.functions, [])
         with Page(panel, token) as page:
             page.await_value("level", 7, checks)
+            peer.await_true("the device's numbers come", lambda: page.device.get("requests", 0) > 0, checks)
+            checks.equal("that it refuses the question for its identity is no failure", page.device["errors"], 0)
             device.is_broken = True
             peer.await_true("an exception is shown", lambda: page.quality("pressure") == "exception", checks)
             checks.equal("with its code", page.points["pressure"]["exception"], 4)

@@ -70,6 +70,12 @@ class StatusAndDiagnostics(StatusTest):
         self.status.quality("broken", PointStatus.GOOD)
         self.diagnostics.level("polling", DiagnosticStatus.OK)
 
+    def test_that_a_foreign_device_refuses_the_question_for_the_identity_is_no_exception(self):
+        self.assertEqual(self.status.wait_for(lambda known: known.get("online"))["identity"], "foreign")
+        self.status.quality("broken", PointStatus.GOOD)
+        polling = self.diagnostics.level("polling", DiagnosticStatus.OK)
+        self.assertEqual([key for key in values(polling) if key.startswith("exception")], [])
+
     def test_a_point_that_the_device_has_not_is_rejected(self):
         self.refuse(ILLEGAL_ADDRESS)
         self.assertEqual(self.status.quality("broken", PointStatus.REJECTED).exception, 2)

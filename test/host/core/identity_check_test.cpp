@@ -44,6 +44,26 @@ TEST_F(IdentityCheck, A_device_that_rejects_the_area_is_foreign) {
   EXPECT_EQ(identity->verdict, Verdict::foreign);
 }
 
+TEST_F(IdentityCheck, That_a_foreign_device_refuses_the_question_is_counted_as_an_answer) {
+  for (const auto code : {modbus::Exception::illegal_function, modbus::Exception::illegal_data_address,
+                          modbus::Exception::illegal_data_value}) {
+    device.next_errors.push_back(ExceptionReply{code});
+    EXPECT_EQ(check_identity(link, MapBuilder().build()->map(), no_map)->verdict, Verdict::foreign);
+    EXPECT_EQ(link.counts().exceptions[static_cast<std::size_t>(code)], 0U);
+  }
+  EXPECT_EQ(link.counts().requests, 3U);
+  std::uint16_t value = 0;
+  device.next_errors.push_back(ExceptionReply{modbus::Exception::illegal_data_address});
+  EXPECT_FALSE(link.read(Table::input_registers, modbus::Range::of(0, 1), &value));
+  EXPECT_EQ(link.counts().exceptions[2], 1U) << "of any other request it is an exception";
+}
+
+TEST_F(IdentityCheck, That_a_gateway_cannot_reach_the_unit_is_counted_as_an_exception) {
+  device.next_errors.push_back(ExceptionReply{modbus::Exception::gateway_target_failed_to_respond});
+  EXPECT_FALSE(check_identity(link, MapBuilder().build()->map(), no_map));
+  EXPECT_EQ(link.counts().exceptions[0x0B], 1U);
+}
+
 TEST_F(IdentityCheck, A_device_with_other_values_there_is_foreign) {
   device.values[{Table::input_registers, 0xFF00}] = 0x4F43;
   const auto identity = check_identity(link, MapBuilder().build()->map(), no_map);

@@ -37,6 +37,8 @@ bool is_unit_away(const Error& error) {
                                   exception->code == modbus::Exception::gateway_target_failed_to_respond);
 }
 
+bool is_unit_refusal(const Error& error) { return exception_in(error) != nullptr && !is_unit_away(error); }
+
 bool is_no_reply(const Error& error) {
   return std::holds_alternative<Timeout>(error) || std::holds_alternative<BadFrame>(error) ||
          is_closed(error);

@@ -64,6 +64,9 @@ bool is_no_right(const Error& error);
 /// Returns whether a gateway says that it cannot reach the unit behind it (exceptions 0A and 0B).
 bool is_unit_away(const Error& error);
 
+/// Returns whether the unit itself refuses the request, by any other exception.
+bool is_unit_refusal(const Error& error);
+
 /// Returns whether there was no reply, the end of the connection instead of one, or a malformed one: the
 /// device may be gone, or may refuse this request in this way.
 bool is_no_reply(const Error& error);

@@ -200,9 +200,10 @@ void Link::count(Time now, const Error* error) {
   pause_after(now, gap_);
   const ExceptionReply* exception = error != nullptr ? exception_in(*error) : nullptr;
   if (exception != nullptr) seen_.set(static_cast<std::size_t>(exception->code));
+  const bool is_answer = error != nullptr && may_be_refused_ && is_unit_refusal(*error);
   {
     const std::lock_guard lock(counts_mutex_);
-    counts_.add(answered_ - sent_at_, error);
+    counts_.add(answered_ - sent_at_, is_answer ? nullptr : error);
   }
   const bool is_reply = error == nullptr || exception != nullptr;
   if (is_reply) ++replies_;

@@ -103,6 +103,9 @@ class Link {
 
   /// FC 1 … 4: fills `values` with `range.count()` registers (at most 125), or bits as 0 or 1 (at most 2000).
   Result<> read(Table table, modbus::Range range, std::uint16_t* values);
+  /// Does the same, but an exception is an answer: false, the device does not have them. It is counted as a
+  /// reply and as no exception, unless it says that the unit is away.
+  Result<bool> read_if_mapped(Table table, modbus::Range range, std::uint16_t* values);
   /// FC 20 with one group: fills `registers` (1 … 121) from a file.
   Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers);
   /// FC 66. Only a node understands it, and only over a connection that can_wait().
@@ -227,6 +230,7 @@ class Link {
   Wakeup wakeup_;
   std::atomic<bool> is_woken_{false};  ///< wake() was called, and the owner has not seen it yet
   Rank rank_ = Rank::read;
+  bool may_be_refused_ = false;  ///< the request in progress is that of read_if_mapped()
   bool is_connected_ = false;
   std::uint64_t losses_at_connect_ = 0;  ///< SharedChannel::losses then
   bool has_turn_ = false;                ///< for the request that follows

@@ -27,6 +27,15 @@ Result<> Link::read(Table table, modbus::Range range, std::uint16_t* values) {
   return result(modbus::take_values(request, *reply, values), request.pdu(), *reply);
 }
 
+Result<bool> Link::read_if_mapped(Table table, modbus::Range range, std::uint16_t* values) {
+  may_be_refused_ = true;
+  const Result<> answer = read(table, range, values);
+  may_be_refused_ = false;
+  if (answer) return true;
+  if (is_unit_refusal(answer.error())) return false;
+  return tl::make_unexpected(answer.error());
+}
+
 Result<> Link::read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers) {
   std::array<std::uint8_t, modbus::file_request_size> pdu{};
   modbus::build_file_request({file, record, static_cast<std::uint16_t>(registers.size())}, pdu);
@@ -46,7 +55,7 @@ Result<modbus::ScheduleReply> Link::schedule(const modbus::ScheduleRequest& requ
 Result<> Link::ask(const TableRange& place) {
   std::array<std::uint16_t, modbus::max_read_bits> ignored;
   Result<> answer = read(place.table, place.range, ignored.data());
-  if (answer || (exception_in(answer.error()) != nullptr && !is_unit_away(answer.error()))) return {};
+  if (!answer && is_unit_refusal(answer.error())) return {};
   return answer;
 }
 

@@ -16,10 +16,7 @@ namespace {
 Result<bool> read_if_mapped(Link& link, std::uint32_t first, Span<std::uint16_t> registers) {
   const auto range =
       modbus::Range::of(identity::reserved.start() + first, static_cast<std::uint32_t>(registers.size()));
-  const auto read = link.read(Table::input_registers, range, registers.data());
-  if (read) return true;
-  if (exception_in(read.error()) != nullptr && !is_unit_away(read.error())) return false;
-  return tl::make_unexpected(read.error());
+  return link.read_if_mapped(Table::input_registers, range, registers.data());
 }
 
 /// The first registers of the area, as `parse` understands them.
