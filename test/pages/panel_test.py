@@ -153,6 +153,36 @@ class Panel(PanelCase):
         self.await_state("online")
         self.browser.await_true("return document.querySelectorAll('#points tr.away').length === 0")
 
+    def controls(self):
+        """Of every point that can be written: whether it can be used, and what is said of it."""
+        return self.browser.run("""return Array.from(document.querySelectorAll(
+            "#points button, #points input, #points select")).map(control => [!control.disabled, control.title])""")
+
+    def test_nothing_can_be_written_while_the_device_is_offline_and_what_was_typed_stays(self):
+        panel = self.serve("--write")
+        self.await_value("lamp", "off")
+        field = self.element(self.row("setpoint", "td.write input"))
+        field.send_keys("-40")
+        mode = self.element(self.row("mode", "td.write select"))
+        mode.send_keys("running")
+        usable = self.controls()
+        self.assertEqual({can for can, _ in usable}, {True})
+        self.assertIn("100", field.get_attribute("title"))
+        port = self.node.port
+        self.node.stop()
+        self.await_state("offline")
+        self.browser.await_true(lambda: {can for can, _ in self.controls()} == {False})
+        self.assertEqual([title for _, title in self.controls() if not title.startswith("offline: ")], [])
+        self.screenshot("panel-offline-write")
+        self.start_node(self.map_file, port)
+        self.await_state("online")
+        self.browser.await_true(lambda: self.controls() == usable)
+        self.assertEqual((field.get_attribute("value"), mode.get_attribute("value")), ("-40", "running"))
+        field.send_keys(Keys.ENTER)
+        self.await_outcome("setpoint", "ok")
+        panel.stop()
+        self.browser.await_true(lambda: {can for can, _ in self.controls()} == {False})
+
     def test_a_panel_that_ends_is_said_and_greys_out(self):
         panel = self.serve()
         self.await_value("level", "-2 mm")

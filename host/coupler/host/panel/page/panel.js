@@ -56,14 +56,16 @@ function makeControls(entry) {
   const outcome = make("output", "outcome");
   outcome.setAttribute("aria-live", "polite");
   entry.outcome = outcome;
-  if (point.write.kind === "switch" && point.write_only)
-    return [makeButton("on", `${point.name} on`, () => write(entry, "true")), " ",
-      makeButton("off", `${point.name} off`, () => write(entry, "false")), outcome];
+  if (point.write.kind === "switch" && point.write_only) {
+    entry.controls = [makeButton("on", `${point.name} on`, () => write(entry, "true")),
+      makeButton("off", `${point.name} off`, () => write(entry, "false"))];
+    return [entry.controls[0], " ", entry.controls[1], outcome];
+  }
   if (point.write.kind === "switch") {
-    entry.control = makeButton("set", point.name, () => write(entry, String(!entry.shown.value)));
-    entry.control.setAttribute("role", "switch");
-    entry.control.disabled = true; // until it is known what the other value is
-    return [entry.control, outcome];
+    entry.switch = makeButton("set", point.name, () => write(entry, String(!entry.shown.value)));
+    entry.switch.setAttribute("role", "switch");
+    entry.controls = [entry.switch];
+    return [entry.switch, outcome];
   }
   const form = make("form", "");
   const field = point.values ? make("select", "") : make("input", "");
@@ -74,9 +76,9 @@ function makeControls(entry) {
   if (!point.values) {
     field.autocomplete = "off";
     field.placeholder = point.write.range || "";
-    field.title = point.write.range || "";
   }
   const button = make("button", "", "write");
+  entry.controls = [field, button];
   form.append(field, button);
   form.addEventListener("submit", (event) => {
     event.preventDefault();
@@ -96,8 +98,9 @@ function addRow(point) {
   const { svg, path } = makeDrawing();
   const row = make("tr", "", name, value, make("td", "curve", svg), seen, make("td", "type", point.type), make("td", "address", point.place.replace("_", " ")));
   row.dataset.point = point.name;
-  const entry = { point, row, text, about, seen, path, steps: [], changedAt: 0, shown: null, control: null, outcome: null };
+  const entry = { point, row, text, about, seen, path, steps: [], changedAt: 0, shown: null, switch: null, controls: [], outcome: null };
   row.append(make("td", "write", ...(point.write ? makeControls(entry) : [])));
+  showControls(entry);
   element("points").append(row);
   rows.set(point.name, entry);
 }
@@ -144,6 +147,21 @@ function seenText(shown) {
   return [isBit && shown.off ? "off" : "", isBit && shown.on ? "on" : "", shown.changes > 0 ? changes : ""].filter(Boolean).join(" · ");
 }
 
+/// They are disabled while nothing can be written, and say why. What was typed stays.
+function showControls(entry) {
+  const { point, shown } = entry;
+  const away = element("device").dataset.state === "online" ? "" : element("device").textContent;
+  const isKnown = shown !== null && shown.quality === "good" && typeof shown.value === "boolean";
+  const why = away || (entry.switch && !isKnown ? "It is not known which value it has." : "");
+  for (const control of entry.controls) {
+    control.disabled = why !== "";
+    control.title = why || (control.matches("input") && point.write.range) || "";
+  }
+  if (!entry.switch) return;
+  entry.switch.setAttribute("aria-checked", String(isKnown && shown.value));
+  setText(entry.switch, isKnown && shown.value ? "switch off" : "switch on");
+}
+
 function show(entry) {
   const { point, row, shown } = entry;
   const good = shown.quality === "good" || point.write_only === true;
@@ -157,18 +175,17 @@ function show(entry) {
   setText(entry.text, valueText(point, shown));
   setText(entry.about, about);
   setText(entry.seen, seenText(shown));
-  if (entry.control) {
-    entry.control.disabled = !good || typeof shown.value !== "boolean";
-    entry.control.setAttribute("aria-checked", String(shown.value === true));
-    setText(entry.control, shown.value === true ? "switch off" : "switch on");
-  }
+  if (entry.switch) showControls(entry);
 }
 
 /// A screen reader reads what is set, so only news is.
 function say(state, text) {
-  element("device").dataset.state = state;
-  setText(element("device"), text);
+  const device = element("device");
+  const isNews = device.dataset.state !== state || device.textContent !== text;
+  device.dataset.state = state;
+  setText(device, text);
   if (state !== "online") setText(element("numbers"), "");
+  if (isNews) rows.forEach(showControls);
 }
 
 function showDevice(device) {
