@@ -218,7 +218,7 @@ class Panel(PanelCase):
         self.element("#save").click()
         self.browser.await_true(lambda: (self.folder / "seen.csv").exists())
         lines = (self.folder / "seen.csv").read_text("utf-8").splitlines()
-        self.assertEqual((lines[0], len(lines)), ("point,seen_off,seen_on,changes", 1 + len(POINTS)))
+        self.assertEqual((lines[0], len(lines)), ("point,seen_off,seen_on,changes,table,address,modicon,part", 1 + len(POINTS)))
 
     def test_fits_a_phone_and_a_screen(self):
         for size in (DESKTOP, PHONE):
@@ -232,6 +232,19 @@ class Panel(PanelCase):
         for control in self.browser.driver.find_elements(By.CSS_SELECTOR, "button, input, select"):
             if control.is_displayed():
                 self.assertGreaterEqual(control.size["height"], 30, "a finger hits it")
+
+    def test_says_where_a_point_is_on_a_phone_and_a_screen_in_modicon_numbers_too(self):
+        map_file = self.folder / "modicon.yaml"
+        map_file.write_text("name: pump\ntimeout: 20s\naddressing: modicon\nmapping:\n"
+                            "  holding_registers: {speed: {address: 40008, type: REAL},\n"
+                            "                      ready: {address: 40010, type: BOOL, bit: 3}}\n", "utf-8")
+        for size in (DESKTOP, PHONE):
+            with self.subTest(size=size):
+                self.serve(map_file=map_file, size=size)
+                places = [self.element(self.row(point, "td.address")).text.split("\n") for point in ("speed", "ready")]
+                self.assertEqual([" ".join(place) for place in places],
+                                 ["holding registers 7 – 8 40008 – 40009", "holding registers 9, bit 3 40010"])
+                self.screenshot(f"panel-modicon-{size[0]}")
 
     def test_has_a_dark_side(self):
         def lightness(what, selector="body"):

@@ -66,6 +66,10 @@ def what_else_is_served(panel, page, checks):
     checks.equal("no controls", [name for name, point in points.items() if "write" in point], [])
     checks.equal("what is said of points", [points["lamp"]["description"], points["setpoint"]["units"]],
                  ["Lamp above the door", "mm"])
+    checks.equal("where it is, as requests count and as Modicon does",
+                 [[points[name][key] for key in ("place", "modicon")] for name in ("lamp", "door", "level", "gain")],
+                 [["coils 0", "00001"], ["discrete_inputs 0", "10001"], ["input_registers 0", "30001"],
+                  ["holding_registers 8 – 9", "40009 – 40010"]])
     checks.equal("names of values", points["mode"]["values"], [[0, "OFF"], [3, "RUNNING"]])
     checks.equal("bits", (points["word"]["bits"], "bits" in points["setpoint"]), (16, False))
     history = panel.get("/history.json", page.token)
@@ -77,9 +81,11 @@ def what_else_is_served(panel, page, checks):
     status, headers, text = panel.ask("GET", "/seen.csv", token=page.token)
     checks.equal("the loop check", (status, headers["Content-Type"].startswith("text/csv"), text.count("\r\n")),
                  (200, True, text.count("\n")))
-    seen = {row["point"]: (row["seen_off"], row["seen_on"]) for row in csv.DictReader(io.StringIO(text))}
-    checks.equal("what was seen", [seen["door"], seen["setpoint"], seen["level"]],
+    rows = {row["point"]: row for row in csv.DictReader(io.StringIO(text))}
+    checks.equal("what was seen", [(rows[name]["seen_off"], rows[name]["seen_on"]) for name in ("door", "setpoint", "level")],
                  [("yes", "yes"), ("yes", "yes"), ("no", "yes")])
+    checks.equal("and where", [[rows[name][key] for key in ("table", "address", "modicon", "part")] for name in ("door", "gain")],
+                 [["discrete_inputs", "0", "10001", ""], ["holding_registers", "8", "40009", ""]])
 
 
 def a_device_goes_and_comes_back(node, coupler, map_file, checks):

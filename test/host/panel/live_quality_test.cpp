@@ -174,8 +174,9 @@ TEST_F(LiveValuesTest, When_nobody_reads_any_more_nothing_is_known) {
 TEST_F(LiveValuesTest, The_loop_check_is_CSV_of_RFC_4180) {
   show(MapBuilder().coil("lamp", 0).holding("speed", 0));
   const std::string csv = values_->seen_csv();
-  EXPECT_EQ(csv.substr(0, csv.find("lamp")), "point,seen_off,seen_on,changes\r\n");
-  EXPECT_EQ(csv.substr(csv.find("lamp")), "lamp,no,no,0\r\nspeed,no,no,0\r\n");
+  EXPECT_EQ(csv.substr(0, csv.find("lamp")), "point,seen_off,seen_on,changes,table,address,modicon,part\r\n");
+  EXPECT_EQ(csv.substr(csv.find("lamp")),
+            "lamp,no,no,0,coils,0,00001,\r\nspeed,no,no,0,holding_registers,0,40001,\r\n");
 }
 
 TEST_F(LiveValuesTest, The_loop_check_tells_what_was_seen_of_each_point) {

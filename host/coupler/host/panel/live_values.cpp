@@ -12,10 +12,12 @@
 #include <nlohmann/json.hpp>
 
 #include "coupler/codec/value.hpp"
+#include "coupler/docs/point_description.hpp"
 #include "coupler/host/core/value_text.hpp"
 #include "coupler/host/record/value_json.hpp"
 #include "coupler/json/json_text.hpp"
 #include "coupler/map/published.hpp"
+#include "coupler/plan/explain.hpp"
 
 namespace coupler::host {
 namespace {
@@ -36,6 +38,12 @@ double number_of(const std::uint16_t* registers, const Point& point) {
   if (codec::is_scalable(point.format.type)) return published(registers, point);
   return std::visit([](const auto& value) { return as_number(value); },
                     codec::decode(registers, point.format));
+}
+
+std::string seen_line(const Point& point, bool off, bool on, std::uint64_t changes) {
+  const docs::PointDescription said = docs::describe(point, 0);
+  return fmt::format("{},{},{},{},{},{},{},{}\r\n", said.name, off ? "yes" : "no", on ? "yes" : "no", changes,
+                     to_string(said.table), said.first, plan::modicon(said.table, said.first), said.part);
 }
 
 }  // namespace
@@ -230,10 +238,9 @@ std::string LiveValues::histories(Time now, std::size_t steps) {
 
 std::string LiveValues::seen_csv() {
   const std::lock_guard lock(mutex_);
-  std::string text = "point,seen_off,seen_on,changes\r\n";
+  std::string text = "point,seen_off,seen_on,changes,table,address,modicon,part\r\n";
   for (std::size_t i = 0; i < points_.size(); ++i)
-    text += fmt::format("{},{},{},{}\r\n", map_.points[i].name, points_[i].seen_off ? "yes" : "no",
-                        points_[i].seen_on ? "yes" : "no", changes_of(points_[i]));
+    text += seen_line(map_.points[i], points_[i].seen_off, points_[i].seen_on, changes_of(points_[i]));
   return text;
 }
 

@@ -48,7 +48,8 @@ ordered_json point_json(const Point& point, bool writes) {
                     {"units", said.units},
                     {"type", said.count.empty() ? said.type : fmt::format("{}[{}]", said.type, said.count)},
                     {"place", fmt::format("{} {}{}{}", to_string(said.table), said.address,
-                                          said.part.empty() ? "" : ", ", said.part)}};
+                                          said.part.empty() ? "" : ", ", said.part)},
+                    {"modicon", said.modicon}};
   if (const unsigned bits = bits_of(point); bits > 0) json["bits"] = bits;
   for (const NamedValue& value : point.values) json["values"].push_back({value.value, value.name});
   if (!is_readable(point)) json["write_only"] = true;

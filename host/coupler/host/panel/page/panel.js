@@ -96,7 +96,7 @@ function addRow(point) {
   const value = make("td", "value", text, about);
   const seen = make("td", "seen");
   const { svg, path } = makeDrawing();
-  const row = make("tr", "", name, value, make("td", "curve", svg), seen, make("td", "type", point.type), make("td", "address", point.place.replace("_", " ")));
+  const row = make("tr", "", name, value, make("td", "curve", svg), seen, make("td", "type", point.type), make("td", "address", point.place.replace("_", " "), " ", make("small", "", point.modicon)));
   row.dataset.point = point.name;
   const entry = { point, row, text, about, seen, path, steps: [], changedAt: 0, shown: null, switch: null, controls: [], outcome: null };
   row.append(make("td", "write", ...(point.write ? makeControls(entry) : [])));
