@@ -39,6 +39,36 @@ class Panel(PanelCase):
         self.assertIn("press", self.element("#name").text)
         self.assertIn("</td><script>", self.element(self.row("lamp", "th")).text)
 
+    def test_bits_of_a_word_are_lamps_with_a_history_when_they_are_wanted(self):
+        self.serve("--write")
+        self.set_register(1, 0x8005)
+        self.browser.await_true(lambda: "0x8005" in self.text(self.row("word", "td.value")))
+        button = self.element(self.row("word", "th button"))
+        self.assertEqual((button.text, button.get_attribute("aria-expanded")), ("show 16 bits", "false"))
+        button.click()
+        lamps = [f"word.{bit}" for bit in range(16)]
+        self.assertEqual(self.browser.run(SHOWN), ["lamp", "valves", "door", "level", "setpoint", "word", *lamps, "mode", "label"])
+        self.assertEqual([self.text(self.row(lamp, "td.value")) for lamp in lamps],
+                         ["on" if 0x8005 >> bit & 1 else "off" for bit in range(16)])
+        self.set_register(1, 0x0006)
+        self.await_value("word.0", "off")
+        self.assertEqual([self.text(self.row(f"word.{bit}", "td.seen")) for bit in (0, 1, 2, 3)],
+                         ["off · on · 2 changes", "off · on · 1 change", "off · on · 1 change", "off"])
+        self.browser.await_true("return document.querySelector('tr[data-point=\"word.2\"] path').getAttribute('d').includes('M299')")
+        self.assertEqual(self.browser.run("return document.querySelectorAll('tr.bit.on').length"), 2)
+        self.screenshot("panel-bits")
+        self.element("#filter").send_keys("word")
+        self.browser.await_true(lambda: self.browser.run(SHOWN) == ["word", *lamps])
+        self.element("#filter").send_keys("x")
+        self.browser.await_true(lambda: self.browser.run(SHOWN) == [])
+        self.element("#filter").send_keys(Keys.BACKSPACE)
+        self.node.stop()
+        self.await_state("offline")
+        self.browser.await_true("return document.querySelectorAll('tr.bit.away').length === 16")
+        button.click()
+        self.assertEqual(self.browser.run(SHOWN), ["word"])
+        self.assertEqual(self.browser.complaints(), [])
+
     def test_a_curve_is_drawn(self):
         self.serve()
         for value in (1, 50, -50):
@@ -82,8 +112,7 @@ class Panel(PanelCase):
     def test_read_only_has_no_controls(self):
         self.serve()
         self.await_value("level", "-2 mm")
-        self.assertEqual(self.browser.run("return document.querySelectorAll('#points button, #points input, #points select,"
-                                          " #points form, #points output').length"), 0)
+        self.assertEqual(self.browser.run("return document.querySelectorAll('#points .write *').length"), 0)
         status = self.browser.driver.execute_async_script("""const done = arguments[0];
             ask("write", {method: "POST", body: '{"point": "lamp", "value": "true"}'})
               .then(() => done("written"), error => done(error.message))""")
@@ -156,7 +185,7 @@ class Panel(PanelCase):
     def controls(self):
         """Of every point that can be written: whether it can be used, and what is said of it."""
         return self.browser.run("""return Array.from(document.querySelectorAll(
-            "#points button, #points input, #points select")).map(control => [!control.disabled, control.title])""")
+            ".write button, .write input, .write select")).map(control => [!control.disabled, control.title])""")
 
     def test_nothing_can_be_written_while_the_device_is_offline_and_what_was_typed_stays(self):
         panel = self.serve("--write")
@@ -218,7 +247,8 @@ class Panel(PanelCase):
         self.element("#save").click()
         self.browser.await_true(lambda: (self.folder / "seen.csv").exists())
         lines = (self.folder / "seen.csv").read_text("utf-8").splitlines()
-        self.assertEqual((lines[0], len(lines)), ("point,seen_off,seen_on,changes,table,address,modicon,part", 1 + len(POINTS)))
+        self.assertEqual((lines[0], len(lines)), ("point,seen_off,seen_on,changes,table,address,modicon,part", 1 + len(POINTS) + 16))
+        self.assertIn("word.15,yes,no,0,holding_registers,1,40002,bit 15", lines)
 
     def test_fits_a_phone_and_a_screen(self):
         for size in (DESKTOP, PHONE):

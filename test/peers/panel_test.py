@@ -73,7 +73,10 @@ def what_else_is_served(panel, page, checks):
     checks.equal("names of values", points["mode"]["values"], [[0, "OFF"], [3, "RUNNING"]])
     checks.equal("bits", (points["word"]["bits"], "bits" in points["setpoint"]), (16, False))
     history = panel.get("/history.json", page.token)
-    checks.equal("a history each", list(history), [*POINTS, "secret"] if "secret" in history else POINTS)
+    of_each = [name for point in POINTS for name in ([point, "word.bits"] if point == "word" else [point])]
+    checks.equal("a history each, and one of a word's bits", list(history),
+                 [*of_each, "secret"] if "secret" in history else of_each)
+    checks.equal("bits that were on", int(history["word.bits"][-1][0], 16), 0x2F)
     checks.equal("300 steps", {len(steps) for steps in history.values()}, {300})
     checks.equal("of level", history["level"][-1], [-2, -2])
     checks.equal("of pressure, both values it had", [[round(number, 1) for number in step]
@@ -86,6 +89,9 @@ def what_else_is_served(panel, page, checks):
                  [("yes", "yes"), ("yes", "yes"), ("no", "yes")])
     checks.equal("and where", [[rows[name][key] for key in ("table", "address", "modicon", "part")] for name in ("door", "gain")],
                  [["discrete_inputs", "0", "10001", ""], ["holding_registers", "8", "40009", ""]])
+    checks.equal("of bits of a word, too", [list(rows[f"word.{bit}"].values()) for bit in (0, 4)],
+                 [["word.0", "yes", "yes", "1", "holding_registers", "6", "40007", "bit 0"],
+                  ["word.4", "yes", "no", "0", "holding_registers", "6", "40007", "bit 4"]])
 
 
 def a_device_goes_and_comes_back(node, coupler, map_file, checks):

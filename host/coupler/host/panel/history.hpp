@@ -13,31 +13,25 @@
 
 namespace coupler::host {
 
-/// The last ten minutes of a number, as the least and the greatest of each step. Fixed memory, no heap.
-class History {
+/// The last ten minutes of a value, in steps. Fixed memory, no heap. A `StepType` is what is known of a step,
+/// nothing at first, and `add()` adds a value that it had.
+template <class StepType>
+class StepHistory {
  public:
+  using Step = StepType;
   static constexpr std::size_t steps = 300;
   static constexpr std::chrono::seconds step{2};
 
-  struct Step {
-    float least = std::numeric_limits<float>::quiet_NaN();  ///< NaN: nothing is known
-    float greatest = std::numeric_limits<float>::quiet_NaN();
-  };
-
-  /// It has this value from now on; one that is not finite as a float is not known.
-  void take(double value, Time at) {
-    const auto number = static_cast<float>(value);
-    if (!std::isfinite(number)) return lose(at);
+  /// It has this value from now on.
+  void take(const Step& value, Time at) {
     advance(at);
-    Step& now = steps_[newest_ % steps];
-    if (!(now.least <= number)) now.least = number;
-    if (!(now.greatest >= number)) now.greatest = number;
-    value_ = number;
+    steps_[newest_ % steps].add(value);
+    value_ = value;
   }
   /// Its value is not known from now on.
   void lose(Time at) {
     advance(at);
-    value_ = std::numeric_limits<float>::quiet_NaN();
+    value_ = {};
   }
   /// The oldest is 0, the step that is not over yet the last one.
   const Step& at(std::size_t i) const { return steps_[(newest_ + 1 + i) % steps]; }
@@ -52,7 +46,7 @@ class History {
         newest_ = number;
         break;
       }
-      steps_[(newest_ + 1) % steps] = {value_, value_};
+      steps_[(newest_ + 1) % steps] = value_;
     }
   }
 
@@ -60,7 +54,29 @@ class History {
   std::array<Step, steps> steps_{};
   std::uint64_t newest_ = 0;  ///< a time, in steps
   bool has_begun_ = false;
-  float value_ = std::numeric_limits<float>::quiet_NaN();
+  Step value_{};
+};
+
+/// The least and the greatest number of a step.
+struct NumberStep {
+  float least = std::numeric_limits<float>::quiet_NaN();  ///< NaN: nothing is known
+  float greatest = std::numeric_limits<float>::quiet_NaN();
+
+  void add(const NumberStep& value) {
+    if (!(least <= value.least)) least = value.least;
+    if (!(greatest >= value.greatest)) greatest = value.greatest;
+  }
+};
+
+/// That of a number.
+class History : public StepHistory<NumberStep> {
+ public:
+  /// A value that is not finite as a float is not known.
+  void take(double value, Time at) {
+    const auto number = static_cast<float>(value);
+    if (!std::isfinite(number)) return lose(at);
+    StepHistory::take({number, number}, at);
+  }
 };
 
 }  // namespace coupler::host

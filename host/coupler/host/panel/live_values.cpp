@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -12,12 +14,12 @@
 #include <nlohmann/json.hpp>
 
 #include "coupler/codec/value.hpp"
-#include "coupler/docs/point_description.hpp"
 #include "coupler/host/core/value_text.hpp"
+#include "coupler/host/panel/history_text.hpp"
+#include "coupler/host/panel/loop_check.hpp"
 #include "coupler/host/record/value_json.hpp"
 #include "coupler/json/json_text.hpp"
 #include "coupler/map/published.hpp"
-#include "coupler/plan/explain.hpp"
 
 namespace coupler::host {
 namespace {
@@ -40,22 +42,22 @@ double number_of(const std::uint16_t* registers, const Point& point) {
                     codec::decode(registers, point.format));
 }
 
-std::string seen_line(const Point& point, bool off, bool on, std::uint64_t changes) {
-  const docs::PointDescription said = docs::describe(point, 0);
-  return fmt::format("{},{},{},{},{},{},{},{}\r\n", said.name, off ? "yes" : "no", on ? "yes" : "no", changes,
-                     to_string(said.table), said.first, plan::modicon(said.table, said.first), said.part);
-}
-
 }  // namespace
 
 LiveValues::LiveValues(const Map& map, const ValueTable& table, Report report)
-    : map_(map), table_(table), report_(std::move(report)), points_(map.points.size()) {}
+    : map_(map), table_(table), report_(std::move(report)), points_(map.points.size()) {
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (const unsigned bits = bits_of(map.points[i]); bits > 0)
+      points_[i].bits = std::make_unique<WordBits>(bits);
+}
 
 void LiveValues::take_number(std::uint32_t i, Time at) {
   const Point& point = map_.points[i];
   const Span<const std::uint16_t> registers(table_.registers(i), range(point).count());
   State& state = points_[i];
   state.history.take(number_of(registers.data(), point), at);
+  if (state.bits)
+    state.bits->take(std::get<std::uint64_t>(codec::decode(registers.data(), point.format)), at);
   const bool is_off =
       std::all_of(registers.begin(), registers.end(), [](std::uint16_t each) { return each == 0; });
   (is_off ? state.seen_off : state.seen_on) = true;
@@ -106,7 +108,7 @@ void LiveValues::on_online(bool online) {
     } else {
       for (State& state : points_) {
         if (state.quality != Quality::never_read) state.quality = Quality::offline;
-        state.history.lose(now);
+        state.lose(now);
         state.revision = revision_;
       }
     }
@@ -133,7 +135,7 @@ bool LiveValues::take_quality(std::uint32_t i, const PointQuality& now, Time at)
   state.quality = now.state;
   state.exception = code;
   state.why = now.why;
-  state.history.lose(at);
+  state.lose(at);
   state.revision = ++revision_;
   return true;
 }
@@ -191,6 +193,7 @@ std::string LiveValues::news(std::uint64_t& seen, Time earliest, Time until) {
                       {"changes", changes_of(state)},
                       {"on", state.seen_on},
                       {"off", state.seen_off}};
+    if (state.bits) json["bits"] = state.bits->json();
     const ValueTable::Value value = table_.get(static_cast<std::uint32_t>(i), now);
     if (state.number > 0 && value.has_value()) {
       json["value"] = value_json(value.registers.data(), point);
@@ -216,31 +219,36 @@ std::string LiveValues::news(std::uint64_t& seen, Time earliest, Time until) {
 }
 
 std::string LiveValues::histories(Time now, std::size_t steps) {
+  const std::size_t first = History::steps - std::min(steps, History::steps);
   std::string all = "{";
   for (std::size_t i = 0; i < points_.size(); ++i) {
+    std::optional<StepHistory<BitsStep>> bits;
     // One at a time: the connection's thread waits for the lock.
     const History history = [&] {
       const std::lock_guard lock(mutex_);
-      points_[i].history.advance(now);
-      return points_[i].history;
+      State& state = points_[i];
+      state.history.advance(now);
+      if (state.bits) {
+        state.bits->advance(now);
+        bits = state.bits->history();
+      }
+      return state.history;
     }();
-    all += fmt::format("{}\"{}\":[", i > 0 ? "," : "", map_.points[i].name);
-    const std::size_t first = History::steps - std::min(steps, History::steps);
-    for (std::size_t j = first; j < History::steps; ++j) {
-      const History::Step& step = history.at(j);
-      if (j > first) all += ',';
-      all += std::isfinite(step.least) ? fmt::format("[{},{}]", step.least, step.greatest) : "null";
-    }
-    all += ']';
+    const std::string_view name = map_.points[i].name;
+    all += fmt::format("{}\"{}\":{}", i > 0 ? "," : "", name, steps_text(history, first));
+    if (bits) all += fmt::format(",\"{}.bits\":{}", name, steps_text(*bits, first));
   }
   return all + '}';
 }
 
 std::string LiveValues::seen_csv() {
   const std::lock_guard lock(mutex_);
-  std::string text = "point,seen_off,seen_on,changes,table,address,modicon,part\r\n";
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    text += seen_line(map_.points[i], points_[i].seen_off, points_[i].seen_on, changes_of(points_[i]));
+  std::string text = loop_check_head();
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const State& state = points_[i];
+    text += loop_check_lines(map_.points[i], {state.seen_off, state.seen_on, changes_of(state)},
+                             state.bits.get());
+  }
   return text;
 }
 

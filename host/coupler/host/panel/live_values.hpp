@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "coupler/host/core/sink.hpp"
 #include "coupler/host/core/value_table.hpp"
 #include "coupler/host/panel/history.hpp"
+#include "coupler/host/panel/word_bits.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::host {
@@ -40,10 +42,11 @@ class LiveValues : public Sink {
   /// what is told. One JSON object: the points that are newer, by name, and the device. Everything, with
   /// `seen` 0.
   std::string news(std::uint64_t& seen, Time earliest, Time until);
-  /// The last steps of all points' ten minutes: by name, a list of [least, greatest] or null. JSON.
+  /// The last steps of all points' ten minutes: by name, a list of [least, greatest] or null; by name with
+  /// ".bits", the bits of a word that were on and that were off, as a list of ["on", "off"] or null. JSON.
   std::string histories(Time now, std::size_t steps = History::steps);
-  /// A loop check: which points were seen on and off, or with more than one value, since the start. CSV (RFC
-  /// 4180).
+  /// A loop check: which points, and bits of words, were seen on and off, or with more than one value, since
+  /// the start. CSV (RFC 4180).
   std::string seen_csv();
   /// Ends every wait.
   void end();
@@ -60,6 +63,12 @@ class LiveValues : public Sink {
     bool seen_on = false;               ///< the point was on, or not 0, at least once
     bool seen_off = false;              ///< the point was off, or 0, at least once
     History history;
+    std::unique_ptr<WordBits> bits{};  ///< null: the point has none to show
+
+    void lose(Time at) {
+      history.lose(at);
+      if (bits) bits->lose(at);
+    }
   };
   /// Since the first value.
   static std::uint64_t changes_of(const State& state) { return state.number > 0 ? state.number - 1 : 0; }

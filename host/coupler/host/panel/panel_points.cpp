@@ -8,6 +8,7 @@
 
 #include "coupler/codec/bit_string.hpp"
 #include "coupler/docs/point_description.hpp"
+#include "coupler/host/panel/word_bits.hpp"
 #include "coupler/json/json_text.hpp"
 #include "coupler/map/node_address.hpp"
 
@@ -15,16 +16,6 @@ namespace coupler::host {
 namespace {
 
 using nlohmann::ordered_json;
-
-/// Returns the number of bits in a word that JavaScript can take apart; 0 if it cannot.
-unsigned bits_of(const Point& point) {
-  switch (point.count == 1 ? point.format.type : codec::Type::BOOL) {
-    case codec::Type::BYTE: return 8;
-    case codec::Type::WORD: return 16;
-    case codec::Type::DWORD: return 32;
-    default: return 0;
-  }
-}
 
 bool is_number(const Point& point) {
   return point.count == 1 && point.format.type != codec::Type::BOOL &&

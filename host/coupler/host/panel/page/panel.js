@@ -87,6 +87,38 @@ function makeControls(entry) {
   return [form, outcome];
 }
 
+/// The rows of a word's bits come when they are asked for, and go again: there may be thousands.
+function makeBitsButton(entry) {
+  const { name, bits } = entry.point;
+  const button = makeButton(`show ${bits} bits`, `Show the bits of ${name}`, () => {
+    const opens = entry.bits.length === 0;
+    if (opens) addBits(entry);
+    else for (const { row } of entry.bits.splice(0)) row.remove();
+    button.setAttribute("aria-expanded", String(opens));
+    setText(button, opens ? "hide bits" : `show ${bits} bits`);
+  });
+  button.setAttribute("aria-expanded", "false");
+  return button;
+}
+
+function addBits(entry) {
+  let last = entry.row;
+  for (let bit = 0; bit < entry.point.bits; ++bit) {
+    const name = make("th", "name", `${entry.point.name}.${bit}`);
+    name.scope = "row";
+    const text = document.createTextNode("–");
+    const seen = make("td", "seen");
+    const { svg, path } = makeDrawing();
+    const row = make("tr", "bit", name, make("td", "value", text), make("td", "curve", svg), seen, make("td", "type", "bit"), make("td", "address", `bit ${bit}`), make("td", "write"));
+    row.dataset.point = `${entry.point.name}.${bit}`;
+    last.after(row);
+    last = row;
+    entry.bits.push({ row, text, seen, path });
+  }
+  if (entry.shown) showBits(entry);
+  drawBits(entry);
+}
+
 function addRow(point) {
   const name = make("th", "name", point.name);
   name.scope = "row";
@@ -98,9 +130,10 @@ function addRow(point) {
   const { svg, path } = makeDrawing();
   const row = make("tr", "", name, value, make("td", "curve", svg), seen, make("td", "type", point.type), make("td", "address", point.place.replace("_", " "), " ", make("small", "", point.modicon)));
   row.dataset.point = point.name;
-  const entry = { point, row, text, about, seen, path, steps: [], changedAt: 0, shown: null, switch: null, controls: [], outcome: null };
+  const entry = { point, row, text, about, seen, path, steps: [], bits: [], bitSteps: [], changedAt: 0, shown: null, switch: null, controls: [], outcome: null };
   row.append(make("td", "write", ...(point.write ? makeControls(entry) : [])));
   showControls(entry);
+  if (point.bits) name.append(makeBitsButton(entry));
   element("points").append(row);
   rows.set(point.name, entry);
 }
@@ -128,11 +161,17 @@ function valueText(point, shown) {
   return point.units ? `${shown.text} ${point.units}` : shown.text;
 }
 
+/// Whether a bit is 1 in a hexadecimal text: JavaScript's numbers have 53 bits.
+function hasBit(digits, bit) {
+  const digit = parseInt(digits[digits.length - 1 - Math.floor(bit / 4)] || "0", 16);
+  return Math.floor(digit / 2 ** (bit % 4)) % 2 === 1;
+}
+
 /// "bits 0, 3": those of a word that are set.
 function bitsText(point, shown) {
-  if (!point.bits || typeof shown.value !== "number") return "";
+  if (!point.bits || shown.text === undefined) return "";
   const set = [];
-  for (let bit = 0; bit < point.bits; ++bit) if (Math.floor(shown.value / 2 ** bit) % 2 === 1) set.push(bit);
+  for (let bit = 0; bit < point.bits; ++bit) if (hasBit(shown.bits.is, bit)) set.push(bit);
   return set.length > 0 ? `bits ${set.join(", ")} are 1` : "every bit is 0";
 }
 
@@ -141,10 +180,27 @@ function setText(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
 
-function seenText(shown) {
-  const isBit = typeof shown.value === "boolean";
-  const changes = shown.changes === 1 ? "1 change" : `${shown.changes} changes`;
-  return [isBit && shown.off ? "off" : "", isBit && shown.on ? "on" : "", shown.changes > 0 ? changes : ""].filter(Boolean).join(" · ");
+function seenText(off, on, changes) {
+  const often = changes === 1 ? "1 change" : `${changes} changes`;
+  return [off ? "off" : "", on ? "on" : "", changes > 0 ? often : ""].filter(Boolean).join(" · ");
+}
+
+function isGood({ point, shown }) {
+  return shown.quality === "good" || point.write_only === true;
+}
+
+/// A word's bits, each as a coil is shown.
+function showBits(entry) {
+  const { row: word, shown } = entry;
+  const isKnown = shown.text !== undefined;
+  for (const [bit, { row, text, seen }] of entry.bits.entries()) {
+    const isOn = isKnown && hasBit(shown.bits.is, bit);
+    row.classList.toggle("bad", !isGood(entry));
+    row.classList.toggle("away", word.classList.contains("away"));
+    row.classList.toggle("on", isGood(entry) && isOn);
+    setText(text, isKnown ? (isOn ? "on" : "off") : "–");
+    setText(seen, seenText(hasBit(shown.bits.off, bit), hasBit(shown.bits.on, bit), shown.bits.changes[bit]));
+  }
 }
 
 /// They are disabled while nothing can be written, and say why. What was typed stays.
@@ -164,7 +220,8 @@ function showControls(entry) {
 
 function show(entry) {
   const { point, row, shown } = entry;
-  const good = shown.quality === "good" || point.write_only === true;
+  const good = isGood(entry);
+  const isBit = typeof shown.value === "boolean";
   row.classList.toggle("bad", !good);
   row.classList.toggle("away", shown.quality === "offline" || (!good && shown.quality === "never read"));
   row.classList.toggle("on", good && shown.value === true);
@@ -174,8 +231,9 @@ function show(entry) {
   const about = [point.write_only ? "can only be written" : good ? age : qualityText(shown), bitsText(point, shown)].filter(Boolean).join(" · ");
   setText(entry.text, valueText(point, shown));
   setText(entry.about, about);
-  setText(entry.seen, seenText(shown));
+  setText(entry.seen, seenText(isBit && shown.off, isBit && shown.on, shown.changes));
   if (entry.switch) showControls(entry);
+  showBits(entry);
 }
 
 /// A screen reader reads what is set, so only news is.
@@ -210,9 +268,8 @@ function take(news) {
 // The last ten minutes.
 
 /// A band from the least to the greatest value of each step; of bits, a bar where they were on.
-function drawing(entry, steps) {
+function drawing(steps, isBit) {
   const known = steps.filter(Boolean);
-  const isBit = entry.shown !== null && typeof entry.shown.value === "boolean";
   const low = isBit ? 0 : Math.min(...known.map((step) => step[0]));
   const high = isBit ? 1 : Math.max(...known.map((step) => step[1]));
   const scale = high > low ? 22 / (high - low) : 0;
@@ -222,6 +279,24 @@ function drawing(entry, steps) {
     const from = isBit ? 27 : Number(y(step[0])) + 1;
     return `M${x} ${from}H${x + 1}V${Number(y(step[1])) - 1}H${x}Z`;
   }).join("");
+}
+
+function draw(entry) {
+  entry.path.setAttribute("d", drawing(entry.steps, entry.shown !== null && typeof entry.shown.value === "boolean"));
+  drawBits(entry);
+}
+
+function drawBits(entry) {
+  for (const [bit, { path }] of entry.bits.entries()) {
+    const steps = entry.bitSteps.map((step) => step && [hasBit(step[1], bit) ? 0 : 1, hasBit(step[0], bit) ? 1 : 0]);
+    path.setAttribute("d", drawing(steps, true));
+  }
+}
+
+/// The steps that are known, moved on by those that have passed, and the newest.
+function joined(steps, news, passed) {
+  const old = steps.slice(passed, STEPS - (news.length - passed));
+  return [...Array(STEPS - old.length - news.length).fill(null), ...old, ...news];
 }
 
 let lastStep = -Infinity; // of what is known of the histories
@@ -237,12 +312,11 @@ async function drawAll() {
     drawAll.at = -Infinity;
     return drawAll();
   }
-  for (const [name, news] of Object.entries(await answer.json())) {
-    const entry = rows.get(name);
-    if (!entry) continue;
-    const old = entry.steps.slice(passed, STEPS - (news.length - passed));
-    entry.steps = [...Array(STEPS - old.length - news.length).fill(null), ...old, ...news];
-    if (!entry.row.hidden) entry.path.setAttribute("d", drawing(entry, entry.steps));
+  const news = await answer.json();
+  for (const [name, entry] of rows) {
+    entry.steps = joined(entry.steps, news[name], passed);
+    if (entry.point.bits) entry.bitSteps = joined(entry.bitSteps, news[`${name}.bits`], passed);
+    if (!entry.row.hidden) draw(entry);
   }
   lastStep = step;
   return undefined;
@@ -330,8 +404,10 @@ function loseAll(why) {
 
 function filter() {
   const wanted = element("filter").value.toLowerCase();
-  for (const { point, row } of rows.values())
+  for (const { point, row, bits } of rows.values()) {
     row.hidden = !`${point.name} ${point.description}`.toLowerCase().includes(wanted);
+    for (const bit of bits) bit.row.hidden = row.hidden;
+  }
 }
 
 async function save() {
