@@ -71,6 +71,10 @@ endif()
 foreach(name device devices simulated)
   link(${PROJECT_SOURCE_DIR}/config/launch/ros1/${name}.xml ${package}/launch/${name}.launch)
 endforeach()
+# The example application, as it is installed.
+link(${PROJECT_SOURCE_DIR}/config/examples/sorter/sorter_ros1.xml ${package}/launch/sorter.launch)
+link(${PROJECT_SOURCE_DIR}/config/examples/sorter/sorter.yaml ${package}/config/sorter.yaml)
+link(${PROJECT_SOURCE_DIR}/config/examples/sorter/eject_rospy.py ${package}/../../lib/${PROJECT_NAME}/eject)
 # catkin wants shared libraries and devel/lib; the modules are small static libraries.
 set(BUILD_SHARED_LIBS OFF)
 

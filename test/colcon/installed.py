@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+import time
 import xml.etree.ElementTree
 
 import rclpy
@@ -24,16 +25,19 @@ PATIENCE = 60  # seconds; only tells what hangs from what is slow
 def index(prefix):
     assert get_package_prefix("coupler_driver") == prefix, get_package_prefix("coupler_driver")
     share = get_package_share_directory("coupler_driver")
-    for name in ("package.xml", "config/example-node.yaml", "msg/Status.msg", "srv/Write.srv"):
+    for name in ("package.xml", "config/example-node.yaml", "config/sorter.yaml", "msg/Status.msg", "srv/Write.srv"):
         assert os.path.isfile(os.path.join(share, name)), name
     interfaces = get_resource("rosidl_interfaces", "coupler_driver")[0].split()
     print("in the index:", *(name for name in interfaces if not name.endswith(".idl")))
 
 
 def launch_files():
-    """They cannot be run here: they are XML, and have the tags that they may have."""
-    for name in ("device", "devices", "simulated"):
-        file = os.path.join(get_package_share_directory("coupler_driver"), "launch", name + ".launch.xml")
+    """They cannot be run here: they are XML, and have the tags that they may have; one is in Python, and compiles."""
+    folder = os.path.join(get_package_share_directory("coupler_driver"), "launch")
+    with open(os.path.join(folder, "sorter.launch.py"), encoding="utf-8") as file:
+        compile(file.read(), file.name, "exec")
+    for name in ("device", "devices", "simulated", "sorter"):
+        file = os.path.join(folder, name + ".launch.xml")
         tags = {element.tag for element in xml.etree.ElementTree.parse(file).iter()}
         assert tags <= {"launch", "arg", "let", "node", "param", "executable"}, (file, tags)
 
@@ -44,6 +48,23 @@ def messages(prefix):
     status = Status(online=True, points=[PointStatus(name="lamp")])
     assert deserialize_message(serialize_message(status), Status) == status
     print("imported:", coupler_driver.__file__)
+
+
+def application(prefix):
+    """The example application is a program of the package, and ends when it is told to."""
+    child = subprocess.Popen([prefix + "/lib/coupler_driver/eject"])
+    try:
+        rclpy.init()
+        listener = rclpy.create_node("listener")
+        end = time.monotonic() + PATIENCE
+        while "eject" not in listener.get_node_names():
+            assert time.monotonic() < end, "no node eject"
+            time.sleep(0.05)
+    finally:
+        child.terminate()
+        assert child.wait(PATIENCE) == 0
+        rclpy.shutdown()
+    print("the application ends")
 
 
 def programs(prefix):
@@ -75,4 +96,5 @@ if __name__ == "__main__":
     index(sys.argv[1])
     launch_files()
     messages(sys.argv[1])
+    application(sys.argv[1])
     programs(sys.argv[1])

@@ -11,7 +11,7 @@ import roslaunch.config
 import roslaunch.node_args
 import rosnode
 import rospy
-from std_msgs.msg import Int16
+from std_msgs.msg import Bool, Int16
 
 from support import process, testing
 from support.patience import PATIENCE
@@ -19,6 +19,7 @@ from support.peer import Peer
 from support.ports import free_port
 
 HERE = pathlib.Path(__file__).resolve().parent
+SORTER = HERE.parent.parent / "config" / "examples" / "sorter" / "sorter.yaml"
 DEVICE = str(HERE.parent.parent / "config" / "launch" / "ros1" / "device.xml")
 MAP = """
 name: {name}
@@ -118,6 +119,22 @@ class Launch(testing.RosTest):
         self.launch("coupler_driver", "device.launch", f"map:={process.write_map(MAP.format(name='later'))}",
                     "name:=later", "address:=127.0.0.1", f"port:={peer.port}")
         self.assertEqual(self.topic("/later/level", Int16).next(), 44)
+
+    @unittest.skipUnless(process.has_node(), "coupler-node was not built")
+    def test_the_example_application_works_in_a_namespace(self):
+        node = process.Node(SORTER, port=free_port())
+        self.addCleanup(node.end)
+        file = process.write_map(f"""<launch>
+  <include ns="{self.name}" file="$(find coupler_driver)/launch/sorter.launch">
+    <arg name="port" value="{node.port}"/>
+    <arg name="device" value="belt"/>
+    <arg name="duration" value="0.1"/>
+  </include>
+</launch>""", ".launch")
+        self.launch(file)
+        ejector = self.topic(f"/{self.name}/belt/ejector", Bool)
+        ejector.wait_for(lambda on: on)
+        ejector.becomes(False)
 
     @unittest.skipUnless(process.has_node(), "coupler-node was not built")
     def test_the_simulated_cell_passes_its_rostest(self):
