@@ -2,13 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Switches an output on, `delay` seconds after each rising edge of an input and for `duration` seconds, counted from the edge's stamp.
 docs/application.md explains it. eject_rospy.py is the same for ROS 1."""
+import signal
+import threading
+
 import rclpy
 from coupler_driver.msg import BoolSample, Scheduled
 from coupler_driver.srv import Schedule
 from rclpy.duration import Duration
-from rclpy.executors import ExternalShutdownException
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.signals import SignalHandlerOptions
 from rclpy.time import Time
 from std_msgs.msg import Bool
 
@@ -78,13 +82,16 @@ class Eject(Node):
 
 
 def main():
-    rclpy.init()
-    try:
-        rclpy.spin(Eject())
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        rclpy.try_shutdown()
+    # rclpy's own handler of signals ends its context while spin() still uses it: with many messages, some ends are a traceback.
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    told_to_end = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: told_to_end.set())
+    executor = SingleThreadedExecutor()
+    executor.add_node(Eject())
+    while not told_to_end.is_set():
+        executor.spin_once(timeout_sec=0.2)
+    rclpy.shutdown()
 
 
 if __name__ == "__main__":

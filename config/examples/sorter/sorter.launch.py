@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The driver with a map, and the example application (docs/application.md), for ROS 2. sorter.launch.xml is the same in XML.
+Untried: read against the sources of launch and launch_ros, which nothing here can run.
     ros2 launch coupler_driver sorter.launch.py
     ros2 launch coupler_driver sorter.launch.py map:=/path/to/press.yaml device:=press input:=part_present output:=ejector
 """
