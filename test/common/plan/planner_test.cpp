@@ -15,6 +15,7 @@ namespace {
 
 using codec::Type;
 using fakes::MapBuilder;
+using modbus::Range;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using Spans = std::vector<std::string>;

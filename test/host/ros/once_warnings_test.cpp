@@ -56,6 +56,8 @@ TEST(OnceWarnings, More_than_twenty_at_once_are_counted_and_not_said_later) {
 TEST(OnceWarnings, What_is_not_sure_is_not_counted) {
   OnceWarnings warnings;
   EXPECT_EQ(warnings.update(findings(65, false), "things").size(), OnceWarnings::most_at_once);
+  EXPECT_EQ(warnings.update(findings(65, false), "things").size(), OnceWarnings::most_at_once)
+      << "the next twenty";
 }
 
 }  // namespace

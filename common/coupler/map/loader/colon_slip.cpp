@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "coupler/map/loader/problems.hpp"
+#include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/loader/source_text.hpp"
 
 namespace coupler::loader {
@@ -14,7 +15,6 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r\n";
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool goes_on(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '/'; }
 
 /// One past the name that the text begins with: quoted, or of letters and digits. 0 if there is none.
@@ -65,7 +65,8 @@ std::optional<ColonSlip> colon_slip(std::string_view text) {
   const bool is_word_behind = blanks.find(rest[0]) != std::string_view::npos && value[0] != ':';
   if (!is_word_behind || value.find(": ") != std::string_view::npos || value.back() == ':')
     return std::nullopt;  // the blank belongs to a key
-  return ColonSlip{what, name, value};
+  const bool is_one_word = value.find_first_of(" \t\n") == std::string_view::npos;
+  return ColonSlip{what, name, is_one_word ? value : std::string_view()};
 }
 
 }  // namespace coupler::loader

@@ -145,7 +145,8 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void keep(const YAML::Mark& mark, YAML::anchor_t anchor, const Entry& value) {
-    if (anchor != YAML::NullAnchor && !anchors_->keep(anchor, value)) fail_for_size(mark);
+    if (anchor != YAML::NullAnchor && anchors_ != nullptr && !anchors_->keep(anchor, value))
+      fail_for_size(mark);
   }
 
   bool awaits_key() const {

@@ -67,8 +67,8 @@ void find_points(const Entry& entry, Table table, std::vector<TableEntry>& found
   if (!check_map(entry, expected, "write one 'name: ...' a point below it", context)) return;
   const Entry* before = nullptr;
   for (const Entry& point : entry.children) {
-    if (before != nullptr && before->kind == Entry::Kind::null && !context.served &&
-        find_key(point.key, section_of(table)) != nullptr)
+    if (before != nullptr && before->kind == Entry::Kind::null && point.kind != Entry::Kind::null &&
+        !context.served && find_key(point.key, section_of(table)) != nullptr)
       context.problems.warning(point.key_at, fmt::format("this makes a point called '{}'", point.key),
                                fmt::format("indent it further if it belongs to {}", shown(before->key)));
     before = &point;

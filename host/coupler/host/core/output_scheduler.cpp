@@ -177,21 +177,24 @@ Result<> OutputScheduler::answer_cancel(std::uint32_t number, std::promise<CallA
   }
   const auto at_node = by_node_.number_at_node(number);
   if (!at_node) {
-    to.set_value({false, fmt::format("no write {} waits: it was carried out, or there was none; "
-                                     "list_scheduled names those that wait",
-                                     number)});
+    to.set_value(
+        by_driver_.has(number)
+            ? CallAnswer{false, "too late: it is being written"}
+            : CallAnswer{false, fmt::format("no write {} waits: it was carried out, or there was none; "
+                                            "list_scheduled names those that wait",
+                                            number)});
     return {};
   }
-  const Result<> cancelled = cancel_at_node(*at_node, reason, listener);
+  Result<> cancelled = cancel_at_node(*at_node, reason, listener);
   if (cancelled) {
     to.set_value({true, "cancelled"});
     return {};
   }
-  if (exception_in(cancelled.error()) == nullptr) {
+  if (exception_in(cancelled.error()) == nullptr || is_unit_away(cancelled.error())) {
     to.set_value({false, "it may be carried out or not: " + to_string(cancelled.error())});
     return cancelled;
   }
-  to.set_value({false, "too late: it has begun"});
+  to.set_value({false, "too late: it has begun, or the node has ended it; its outcome comes on scheduled"});
   return {};
 }
 

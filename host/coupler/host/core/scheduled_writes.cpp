@@ -19,6 +19,11 @@ void ScheduledWrites::add(const AcceptedWrite& what) {
   find_due();
 }
 
+bool ScheduledWrites::has(std::uint32_t number) const {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [number](const Entry& entry) { return entry.what.number == number; });
+}
+
 Time ScheduledWrites::due(const Entry& entry) {
   return entry.state == Entry::State::waiting ? entry.what.what.due : Time::max();
 }

@@ -25,6 +25,8 @@ class ScheduledWrites {
   ScheduledWrites(Link& link, Writer& writer, ScheduledListener& outcomes);
 
   void add(const AcceptedWrite& what);
+  /// Returns whether the one with that number waits or is being written.
+  bool has(std::uint32_t number) const;
   /// The number of those that wait or are being written.
   std::size_t size() const { return entries_.size(); }
 

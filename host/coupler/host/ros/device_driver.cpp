@@ -116,7 +116,10 @@ void DeviceDriver::begin(const Followed& followed) {
               [this](std::uint32_t number) { return thread_.cancel_scheduled(number); },
               [this] { return thread_.scheduled(); }, [this] { return thread_.statistics(); }});
   if (map_.poll == Poll::subscribed)
-    subscribers_.follow([this](std::uint32_t point, bool wanted) { thread_.want(point, wanted); });
+    subscribers_.follow([this](std::uint32_t point, bool wanted) {
+      forget(point);  // it is not read meanwhile
+      thread_.want(point, wanted);
+    });
   subscribers_.on_each([this](std::uint32_t point) { thread_.want(point, true); });
 }
 
@@ -191,8 +194,10 @@ void DeviceDriver::publish(Span<const std::uint32_t> points, bool is_told) {
 }
 
 void DeviceDriver::on_no_values(Span<const std::uint32_t> points, Time at) {
-  for (const std::uint32_t point : points)
+  for (const std::uint32_t point : points) {
     if (!values_.is_usable(point)) renew(point);  // so that subscribers see the value come back
+    forget(point);
+  }
   for (const auto& follower : followers_) follower->sink().on_no_values(points, at);
 }
 
@@ -213,6 +218,10 @@ void DeviceDriver::check_text(std::uint32_t point) {
 void DeviceDriver::renew(std::uint32_t point) {
   for (const auto* publishers : {&publishers_, &stamped_, &samples_})
     if (const auto& publisher = (*publishers)[point]) publisher->renew();
+}
+
+void DeviceDriver::forget(std::uint32_t point) {
+  if (const auto& publisher = samples_[point]) publisher->forget();
 }
 
 void DeviceDriver::measure_wall() {
@@ -238,8 +247,10 @@ void DeviceDriver::on_identified(Identity::Verdict verdict) {
 }
 
 void DeviceDriver::on_online(bool online) {
-  if (online)  // values from before the interruption are history
-    for (std::uint32_t i = 0; i < publishers_.size(); ++i) renew(i);
+  for (std::uint32_t i = 0; online && i < publishers_.size(); ++i) {
+    renew(i);  // values from before the interruption are history
+    forget(i);
+  }
   publish_online_(online);
   for (const auto& follower : followers_) follower->sink().on_online(online);
 }

@@ -73,6 +73,7 @@ class DeviceDriver : public Sink {
   void start_followers(const Followed& followed);
   void publish(Span<const std::uint32_t> points, bool is_told);
   void renew(std::uint32_t point);
+  void forget(std::uint32_t point);
   void check_text(std::uint32_t point);
   void measure_wall();
   void refuse(std::optional<std::uint32_t> point, const std::string& what);

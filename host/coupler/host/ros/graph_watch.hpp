@@ -58,6 +58,7 @@ struct DuplicateDriver {
 
 inline std::vector<Finding> findings_of(const std::vector<DuplicateDriver>& duplicates) {
   std::vector<Finding> findings;
+  findings.reserve(duplicates.size());
   for (const auto& [topic, node] : duplicates)
     findings.push_back(
         {topic + node, [topic = topic, node = node] {

@@ -36,6 +36,8 @@ class PointPublisher {
   virtual Time repeat_at() const = 0;
   /// The next value is published whatever it is.
   virtual void renew() = 0;
+  /// Nothing is known of the value from here to the next one. Any thread may call it.
+  virtual void forget() = 0;
 };
 
 /// How many subscribers each point of a device has. A call that waits for the point's next value counts as

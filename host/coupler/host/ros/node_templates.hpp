@@ -71,10 +71,7 @@ class TypedPublisher : public CountingPublisher {
     put_stamp_(message_, sample);
     publisher_.publish(message_);
   }
-  void renew() override {
-    CountingPublisher::renew();
-    put_stamp_.forget();
-  }
+  void forget() override { put_stamp_.forget(); }
 
  private:
   PutStamp put_stamp_;

@@ -33,9 +33,14 @@ class OnceWarnings {
     std::size_t looked_at = 0;
     std::size_t unsaid = 0;
     for (const Finding& finding : findings) {
-      if (!now.insert(finding.key).second || warned_of_.count(finding.key) != 0) continue;
+      if (warned_of_.count(finding.key) != 0) {
+        now.insert(finding.key);
+        continue;
+      }
+      if (looked_at == most_at_once && !finding.is_sure) continue;  // the next look is at it
+      if (!now.insert(finding.key).second) continue;
       if (looked_at == most_at_once) {
-        unsaid += finding.is_sure ? 1 : 0;
+        ++unsaid;
         continue;
       }
       ++looked_at;

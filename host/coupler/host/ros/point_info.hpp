@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -21,6 +22,10 @@ void put_range(Message& message, const Point& point) {
   const auto [least, most] = codec::published_range(point.format, point.scale);
   message.min = std::max(least, point.bounds.min);
   message.max = std::min(most, point.bounds.max);
+  // The largest integer of 64 bits is no double, and the nearest one is beyond it.
+  const bool is_beyond = !point.scale.present() && !codec::is_float(point.format.type) &&
+                         codec::width(point.format.type) == 64 && message.max == most;
+  if (is_beyond) message.max = std::nextafter(most, 0.0);
 }
 
 /// Fills a coupler_driver/PointInfo. `type`: of the messages with its values.

@@ -27,9 +27,11 @@ std::string RemappingCheck::relative(const std::string& name) const {
 /// of such names.
 std::string RemappingCheck::meant(const std::string& name, const std::vector<std::string>& devices) const {
   for (const std::string& device : devices)
-    if (const auto found = names_.find(device + '/' + name); found != names_.end() && found->second)
+    if (const auto found = names_.find(fmt::format("{}/{}", device, name));
+        found != names_.end() && found->second)
       return found->first;
   std::vector<std::string_view> names;
+  names.reserve(names_.size());
   for (const auto& [known, is_a_points] : names_) names.push_back(known);
   std::sort(names.begin(), names.end());
   return std::string(nearest(name, names));

@@ -122,8 +122,11 @@ tl::expected<milliseconds, std::string> duration(const SettingKey& key, const st
   const auto bare = number_in(text);
   if (bare && *bare > loader::most_bare_seconds)
     return wrong(key, text,
-                 fmt::format("a number of seconds up to {}; write {}ms or {}s", loader::most_bare_seconds,
-                             text, text));
+                 *bare <= key.max
+                     ? fmt::format("a number of seconds up to {}; write {}ms or {}s",
+                                   loader::most_bare_seconds, text, text)
+                     : fmt::format("a number of seconds up to {}; write {}ms if these are milliseconds",
+                                   loader::most_bare_seconds, text));
   const auto value = loader::parse_duration(bare ? text + "s" : text);
   const double seconds = value ? std::chrono::duration<double>(*value).count() : -1;
   if (seconds < key.min || seconds > key.max)

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <type_traits>
 #include <utility>
@@ -127,18 +128,23 @@ class SampleStamper {
  public:
   /// `wall` must outlive it.
   explicit SampleStamper(const WallTime& wall) : wall_(wall), stamper_(wall) {}
+  SampleStamper(const SampleStamper& other) : wall_(other.wall_), stamper_(other.stamper_) {}
+  SampleStamper& operator=(const SampleStamper&) = delete;
 
   /// Each value, also one that is not published.
   void see(const Sample& sample) {
-    if (std::exchange(is_unknown_, false) || sample.is_new) since_ = sample.stamp.at;
+    const bool is_first = is_unknown_.exchange(false);
+    is_after_gap_ |= is_first;
+    if (is_first || sample.is_new) since_ = sample.stamp.at;
   }
-  /// The next value is known since its own stamp, whatever it is.
+  /// The next value is known since its own stamp, whatever it is. Any thread may call it.
   void forget() { is_unknown_ = true; }
 
   template <class Message>
   void operator()(Message& message, const Sample& sample) {
     stamper_(message, sample);
     message.told = sample.is_told;
+    message.after_gap = std::exchange(is_after_gap_, false);
     put_time(message.since, std::min(wall_.of(since_), message_time(message.header.stamp)));
   }
 
@@ -146,7 +152,8 @@ class SampleStamper {
   const WallTime& wall_;
   Stamper stamper_;
   Time since_{};
-  bool is_unknown_ = true;
+  std::atomic<bool> is_unknown_{true};
+  bool is_after_gap_ = false;
 };
 
 }  // namespace coupler::host

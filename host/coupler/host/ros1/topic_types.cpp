@@ -52,6 +52,7 @@ void read(XmlRpcValue& answer, Types& types) {
     for (int i = 0; i < list.size(); ++i)
       types[static_cast<std::string&>(list[i][0])] = static_cast<std::string&>(list[i][1]);
   } catch (const XmlRpc::XmlRpcException&) {
+    return;  // what was read before it stays
   }
 }
 

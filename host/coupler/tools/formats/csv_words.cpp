@@ -207,7 +207,7 @@ TableWord ambiguous(std::string_view text, std::uint64_t number) {
 
 TableWord read_table(std::string_view text, bool function_codes, Holds holds) {
   if (const std::string_view outside = without_brackets_behind(text); outside.size() < text.size()) {
-    const TableWord first = read_table(outside, function_codes, holds);
+    TableWord first = read_table(outside, function_codes, holds);
     const std::string_view inside = text.substr(text.find_first_of("([") + 1);
     const TableWord second = read_table(inside.substr(0, inside.size() - 1), function_codes, holds);
     if (first.table && second.table && *first.table != *second.table)
