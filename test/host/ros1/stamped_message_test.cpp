@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <string>
+#include <tuple>
 
 #include "coupler/host/ros1/messages.hpp"
 
@@ -67,6 +68,24 @@ TEST_F(StamperTest, A_stamp_is_in_wall_time) {
   EXPECT_EQ(message.header.stamp.sec, 101U);
   EXPECT_EQ(message.header.stamp.nsec, 250'000'000U - 100);
   EXPECT_EQ(message.header.frame_id, "");
+}
+
+TEST_F(StamperTest, A_sample_says_since_when_its_value_is_known_and_whether_the_one_before_is) {
+  SampleStamper sample(wall);
+  coupler_driver::Int64Sample told;
+  const auto publish = [&](int second, bool is_new) {
+    const Sample seen{{Time{} + seconds(second), {}}, second == 3, is_new};
+    sample.see(seen);
+    sample(told, seen);
+    return std::tuple(told.since.sec, bool(told.after_gap), bool(told.told));
+  };
+  EXPECT_EQ(publish(1, true), std::tuple(100U, true, false));
+  EXPECT_EQ(publish(2, false), std::tuple(100U, false, false));
+  EXPECT_EQ(publish(3, true), std::tuple(102U, false, true));
+  sample.see({{Time{} + seconds(4), {}}, false, true});  // it is no news, and not published
+  EXPECT_EQ(publish(5, false), std::tuple(103U, false, false));
+  sample.forget();
+  EXPECT_EQ(publish(6, false), std::tuple(105U, true, false));
 }
 
 TEST_F(StamperTest, The_uncertainty_is_in_seconds_and_holds_the_error_between_the_clocks) {
