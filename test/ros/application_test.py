@@ -39,7 +39,8 @@ class ApplicationTest(testing.RosTest):
             words = ["--ros-args"] + [word for key, value in parameters.items() for word in ("-p", f"{key}:={value}")]
         name = f"__name:={self.name}_eject"
         self.program = process.Process(SORTER / ("eject_rclpy.py" if ROS2 else "eject_rospy.py"), *words,
-                                       *(["-r", f"__node:={self.name}_eject"] if ROS2 else [name]))
+                                       *(["-r", f"__node:={self.name}_eject"] if ROS2 else [name]),
+                                       environment={**os.environ, "PYTHONUNBUFFERED": "1"})  # rospy does not flush
         self.addCleanup(self.program.end)
         return self.program
 
