@@ -87,7 +87,7 @@ bool check_order(const Entry& order, Type type, const Context& context) {
 /// Refuses the other keys that say where a value is, or that need whole registers.
 bool goes_with_bits(const Reader& reader) {
   for (const std::string_view key : {"offset", "counter", "iio", "pwm"})
-    if (reader.has(key)) {
+    if (reader.knows(key) && reader.has(key)) {
       reader.refuse(key, fmt::format("'{}' does not go with 'bits'", key), "remove one of the two");
       return false;
     }

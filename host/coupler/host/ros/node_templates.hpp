@@ -58,7 +58,7 @@ class TypedPublisher : public CountingPublisher {
   using Message = typename Kind::Message;
 
   TypedPublisher(const Point& point, std::uint32_t index, SubscriberCounts& subscribers,
-                 PutStamp put_stamp = {})
+                 const PutStamp& put_stamp = {})
       : CountingPublisher(point, index, subscribers), put_stamp_(put_stamp) {}
 
   /// Before anything is published. The publisher may call add_subscriber() and remove_subscriber() already.

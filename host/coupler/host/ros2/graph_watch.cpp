@@ -63,8 +63,10 @@ void GraphWatch::warn_of_wrong_topics() {
   for (auto& [topic, types] : node_.topics()) {
     const bool is_own =
         !topics_.needed_type(topic, false).empty() || !topics_.needed_type(topic, true).empty();
-    if (is_own && types.size() > 1) odd.push_back(std::move(topic));
-    if (!is_own && topics_.may_be_mistaken(topic)) foreign.push_back(std::move(topic));
+    if (is_own && types.size() > 1)
+      odd.push_back(std::move(topic));
+    else if (!is_own && topics_.may_be_mistaken(topic))
+      foreign.push_back(std::move(topic));
   }
   odd.insert(odd.end(), foreign.begin(), foreign.end());
   odd.resize(std::min(odd.size(), most));

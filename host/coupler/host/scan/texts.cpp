@@ -55,7 +55,8 @@ bool is_like_a_text(std::string_view text) {
 
 /// Registers of printable characters.
 struct Run {
-  Range range;
+  std::uint32_t start;
+  std::uint32_t count;  ///< of registers; 0: there are none
   std::size_t characters;
   std::optional<Order> order;  ///< if its end shows it: the last register has one character, and a NUL
 };
@@ -68,9 +69,9 @@ Run run_at(const TableFindings& table, std::uint32_t start, std::uint32_t end) {
   const std::size_t characters = std::size_t{at - start} * 2;
   const unsigned last = at < end ? table.value(at) : 0;
   if (may_end_a_text(last >> 8U) && (last & 0xFFU) == 0)
-    return {Range::of(start, at + 1 - start), characters + 1, Order::ABCD};
-  if (may_end_a_text(last)) return {Range::of(start, at + 1 - start), characters + 1, Order::BADC};
-  return {Range::of(start, at - start), characters, std::nullopt};
+    return {start, at + 1 - start, characters + 1, Order::ABCD};
+  if (may_end_a_text(last)) return {start, at + 1 - start, characters + 1, Order::BADC};
+  return {start, at - start, characters, std::nullopt};
 }
 
 codec::Format format_of(const Run& run, Order order) {
@@ -84,8 +85,8 @@ codec::Format format_of(const Run& run, Order order) {
 
 std::string read(const TableFindings& table, const Run& run, Order order) {
   std::vector<std::uint16_t> registers;
-  registers.reserve(run.range.count());
-  for (std::uint32_t at = run.range.start(); at < run.range.end(); ++at) registers.push_back(table.value(at));
+  registers.reserve(run.count);
+  for (std::uint32_t at = run.start; at < run.start + run.count; ++at) registers.push_back(table.value(at));
   std::string text;
   codec::decode_text(registers.data(), format_of(run, order), text);
   return text;
@@ -101,7 +102,8 @@ std::optional<FoundText> text_of(const TableFindings& table, const Run& run) {
   const std::string& other = order == Order::ABCD ? low_first : high_first;
   if (!is_like_a_text(text)) return std::nullopt;
   const bool is_certain = run.order || roughness(low_first) != roughness(high_first);
-  return FoundText{table.table(), run.range, format_of(run, order), text, is_certain ? "" : other};
+  return FoundText{table.table(), Range::of(run.start, run.count), format_of(run, order), text,
+                   is_certain ? "" : other};
 }
 
 }  // namespace
@@ -113,8 +115,8 @@ std::vector<FoundText> find_texts(const std::vector<TableFindings>& tables) {
     for (const Range range : table.readable()) {
       for (std::uint32_t at = range.start(); at < range.end();) {
         const Run run = run_at(table, at, range.end());
-        if (auto text = text_of(table, run)) found.push_back(*std::move(text));
-        at += std::max<std::uint32_t>(run.range.count(), 1);
+        if (auto text = run.count > 0 ? text_of(table, run) : std::nullopt) found.push_back(*std::move(text));
+        at += std::max<std::uint32_t>(run.count, 1);
       }
     }
   }
