@@ -32,6 +32,10 @@ class StandIn(testing.RosTest):
         self.assertEqual(done.returncode, code, (words, done.stdout, done.stderr))
         return done.stdout if code == 0 else done.stderr
 
+    def shows(self, text, *words):
+        """A node that has just begun does not know the others yet."""
+        wait_until(lambda: text in self.ros2(*words), f"{text} in {words}")
+
     def test_options_stand_before_and_behind_what_they_belong_to(self):
         driver = self.driver("--map", process.write_map(MAP.format(name="shown", port=self.peer.port)))
         driver.wait_for("connected")
@@ -49,13 +53,13 @@ class StandIn(testing.RosTest):
     def test_it_shows_nodes_parameters_and_services(self):
         driver = self.driver("--map", process.write_map(MAP.format(name="shown", port=self.peer.port)))
         driver.wait_for("connected")
-        self.assertIn("/shown_driver\n", self.ros2("node", "list"))
+        self.shows("/shown_driver\n", "node", "list")
         self.assertEqual(self.ros2("param", "get", "/shown_driver", "rate"), "Double value is: 20.0\n")
         self.assertEqual(self.ros2("param", "get", "shown_driver", "name"), "String value is: shown\n")
         self.assertIn("  timeout\n", self.ros2("param", "list", "/shown_driver"))
-        self.assertIn("/shown_driver:\n  address\n", self.ros2("param", "list"))
+        self.shows("/shown_driver:\n  address\n", "param", "list")
         self.assertEqual(self.ros2("param", "get", "/shown_driver", "raet"), "Parameter not set.\n")
-        self.assertIn("/shown/write [coupler_driver/srv/Write]\n", self.ros2("service", "list", "-t"))
+        self.shows("/shown/write [coupler_driver/srv/Write]\n", "service", "list", "-t")
         self.assertIn("message='ok'", self.ros2("service", "call", "/shown/write", "coupler_driver/srv/Write",
                                                 "{point: lamp, value: 'true'}"))
 
