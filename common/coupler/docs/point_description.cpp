@@ -5,6 +5,7 @@
 
 #include "coupler/codec/text.hpp"
 #include "coupler/docs/words.hpp"
+#include "coupler/map/typed_value.hpp"
 #include "coupler/plan/explain.hpp"
 
 namespace coupler::docs {
@@ -15,14 +16,6 @@ using codec::Type;
 std::string text_of(const Point& point) {
   if (point.format.type != Type::STRING) return {};
   return fmt::format("{} bytes, {}", point.format.length, codec::to_string(point.format.encoding));
-}
-
-std::string part_of(const Point& point) {
-  if (!is_partial(point)) return {};
-  if (const codec::Format& f = point.format; f.bits != 0)
-    return fmt::format("bits {} to {}", f.bit, f.bit + f.bits - 1);
-  if (point.format.type == Type::BOOL) return fmt::format("bit {}", point.format.bit);
-  return point.format.half == codec::Half::high ? "high byte" : "low byte";
 }
 
 std::string order_of(const Point& point) {
@@ -75,7 +68,7 @@ PointDescription describe(const Point& point, int line) {
   out.last = range(point).last();
   out.address = range_text(fmt::to_string(out.first), fmt::to_string(out.last));
   out.modicon = range_text(plan::modicon(point.table, out.first), plan::modicon(point.table, out.last));
-  out.part = part_of(point);
+  out.part = part_text(point);
   if (point.read_address)
     out.read_at =
         fmt::format("{} ({})", *point.read_address, plan::modicon(point.table, *point.read_address));

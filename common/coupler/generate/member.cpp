@@ -12,6 +12,7 @@
 #include "coupler/codec/text.hpp"
 #include "coupler/generate/code.hpp"
 #include "coupler/generate/macros.hpp"
+#include "coupler/map/typed_value.hpp"
 
 namespace coupler::generate {
 namespace {
@@ -131,11 +132,7 @@ std::string cpp_type(const Point& point) {
 std::string place(const Point& point) {
   std::string out = fmt::format("{} {}", to_string(point.table), point.address);
   if (range(point).count() > 1) out += fmt::format("-{}", range(point).last());
-  if (!is_partial(point)) return out;
-  if (const codec::Format& f = point.format; f.bits != 0)
-    return out + fmt::format(", bits {} to {}", f.bit, f.bit + f.bits - 1);
-  if (point.format.type == Type::BOOL) return out + fmt::format(", bit {}", point.format.bit);
-  return out + (point.format.half == codec::Half::high ? ", high byte" : ", low byte");
+  return is_partial(point) ? fmt::format("{}, {}", out, part_text(point)) : out;
 }
 
 std::string documentation(const Point& point) {

@@ -90,6 +90,14 @@ std::string forbidden_text(const Point& point, const ForbiddenValue& value) {
   return {};
 }
 
+std::string part_text(const Point& point) {
+  const codec::Format& format = point.format;
+  if (!is_partial(point)) return {};
+  if (format.bits != 0) return fmt::format("bits {} to {}", format.bit, format.bit + format.bits - 1);
+  if (format.type == codec::Type::BOOL) return fmt::format("bit {}", format.bit);
+  return format.half == codec::Half::high ? "high byte" : "low byte";
+}
+
 std::string allowed_text(const Point& point) {
   if (!point.values.empty()) return value_names_text(point);
   if (limits_values(point)) return bounds_text(point);

@@ -23,13 +23,17 @@ std::string encode_scaled(double value, const Point& point, std::uint16_t* regis
 /// The same for UTF-8 `text` and a STRING.
 std::string encode_string(std::string_view text, const Point& point, std::uint16_t* registers);
 
-/// Why a value does not fit into the bits of its point, and what does.
+/// Returns why a value does not fit into the bits of its point, and which values do.
 std::string no_room_text(std::uint64_t value, const Point& point);
+
+/// Returns which part of its register the point has: "bit 3", "bits 8 to 11", "high byte". Empty if it has
+/// whole registers, or stands in a table of bits.
+std::string part_text(const Point& point);
 
 /// Returns what may be written to a number: "0 to 10 bar", "idle (0) or running (1)".
 std::string allowed_text(const Point& point);
 
-/// Why the value must not be: "12 bar is above the maximum".
+/// Returns why the value is forbidden: "12 bar is above the maximum".
 std::string forbidden_text(const Point& point, const ForbiddenValue& value);
 
 /// `decode` gives the value in the registers. `encode` writes it, leaves other bits of a shared register

@@ -222,12 +222,10 @@ using modbus::Range;
 Intervals::Intervals(std::vector<Range> ranges) {
   std::sort(ranges.begin(), ranges.end(), [](Range a, Range b) { return a.start() < b.start(); });
   for (const Range range : ranges) {
-    if (!merged_.empty() && range.start() <= merged_.back().end()) {
-      const std::uint32_t start = merged_.back().start();
-      merged_.back() = Range::of(start, std::max(merged_.back().end(), range.end()) - start);
-    } else {
+    if (!merged_.empty() && range.start() <= merged_.back().end())
+      merged_.back() = hull(merged_.back(), range);
+    else
       merged_.push_back(range);
-    }
   }
 }
 

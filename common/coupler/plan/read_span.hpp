@@ -34,11 +34,11 @@ struct ReadSpan {
   Cut end{};
 };
 
-/// What a request for the point has to ask for: its own addresses, and the whole of each area of
+/// Returns the addresses that a request for the point has to ask for: its own, and the whole of each area of
 /// Map::read_whole that has one of them.
 modbus::Range read_extent(const Map& map, const Point& point);
 
-/// The range from the first address of either to the last one of either.
+/// Returns the range from the first address of either to the last one of either.
 modbus::Range hull(modbus::Range a, modbus::Range b);
 
 /// The addresses inside a request that no point of it needs.

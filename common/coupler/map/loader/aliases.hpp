@@ -28,7 +28,7 @@ class Anchors {
   std::size_t room_ = 4 * max_text_size;  ///< bytes
 };
 
-/// How many lists and maps are inside each other; 0 for a scalar.
+/// Returns how many lists and maps are inside each other; 0 for a scalar.
 std::size_t depth_of(const Entry& value);
 
 /// Replaces the keys '<<' of a map by the keys of the maps that they name. The map's own keys, and those of

@@ -18,8 +18,8 @@ struct ColonSlip {
   std::string remedy() const;
 };
 
-/// What is wrong with the ':' of the entry that a text begins with. Nullopt if it has one, or is a single
-/// word.
+/// Returns what is wrong with the ':' of the entry that a text begins with; nullopt if the entry has one, or
+/// the text is a single word.
 std::optional<ColonSlip> colon_slip(std::string_view text);
 
 }  // namespace coupler::loader

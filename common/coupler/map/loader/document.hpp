@@ -33,7 +33,8 @@ const Entry* child(const Entry& entry, std::string_view key);
 
 class Problems;
 
-/// Whether anchors, aliases and merge keys ('<<') are read. Values that an alias copies keep their places.
+/// Says whether anchors, aliases and merge keys ('<<') are read. Values that an alias copies keep their
+/// places.
 enum class Aliases { refused, read };
 
 /// The tree of a YAML or JSON text; nullopt, with the first syntax error in `problems`, if it is neither.

@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::string_view spaces = " \t\r";
 
-/// Where the ':' stands that makes an entry of a line; npos if none does. Quotes hide it.
+/// Returns the place of the ':' that makes the line an entry; npos if none does. One in quotes does not
+/// count.
 std::size_t entry_colon(std::string_view line) {
   char previous = '\n';
   for (std::size_t i = 0; i < line.size(); ++i) {

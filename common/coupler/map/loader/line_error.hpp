@@ -11,12 +11,11 @@ namespace coupler::loader {
 
 constexpr const char* remedy_for_quotes = "of an apostrophe in single quotes write two, or use double quotes";
 
-/// What is wrong with the lines of a YAML text, of which a parser has noticed at `offset` that they make no
-/// sense, outside brackets. The mistake may be in a line above: without its ':' that is a text, which goes
-/// on.
+/// Returns what is wrong with the lines of a YAML text that a parser rejects at `offset`, outside brackets.
+/// The mistake may be in a line above: without its ':' that line is a text, which goes on below it.
 std::optional<SyntaxError> explain_lines(std::string_view text, std::size_t offset);
 
-/// Why what begins at `offset` is no entry of the map that the lines above began.
+/// Returns why the line at `offset` is no entry of the map that the lines above began.
 std::optional<SyntaxError> explain_stranger(std::string_view text, std::size_t offset);
 
 }  // namespace coupler::loader

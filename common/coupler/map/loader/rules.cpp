@@ -164,11 +164,15 @@ void check_lines(const DraftPoints& points, const Context& context) {
   }
 }
 
+std::uint16_t most_in_a_read(Table table, const Limits& limits) {
+  return holds_bits(table) ? limits.read_bits : limits.read_registers;
+}
+
 void check_sizes(const DraftPoints& points, const Limits& limits, const Context& context) {
   for (const DraftPoint& draft : points) {
     if (!draft.placed) continue;
     const bool bits = holds_bits(draft.point.table);
-    const std::uint16_t most_read = bits ? limits.read_bits : limits.read_registers;
+    const std::uint16_t most_read = most_in_a_read(draft.point.table, limits);
     const bool too_long_to_read = is_readable(draft.point) && range(draft.point).count() > most_read;
     if (too_long_to_read || !is_writable(draft.point))
       check_size(draft, bits ? "read_bits" : "read_registers", most_read, context);

@@ -12,6 +12,9 @@ namespace coupler::loader {
 /// A GPIO line belongs to one point.
 void check_lines(const DraftPoints& points, const Context& context);
 
+/// Returns how many bits or registers of the table one request may read.
+std::uint16_t most_in_a_read(Table table, const Limits& limits);
+
 /// A point is read and written in one request, so it fits into the device's limits.
 void check_sizes(const DraftPoints& points, const Limits& limits, const Context& context);
 

@@ -73,7 +73,7 @@ bool closes(std::string_view comment, char open) {
          std::count(comment.begin(), comment.end(), open);
 }
 
-/// What stands before a place of a text, of which a parser says that it makes no sense.
+/// The text before a place that a parser rejects.
 struct Before {
   std::vector<std::size_t> open;  ///< brackets
   /// The comment that hides the only bracket that closes another one: '#' after a blank begins a comment
@@ -120,7 +120,7 @@ std::size_t indentation(std::string_view text, std::size_t offset) {
   return std::min(text.find_first_not_of(' ', start), text.size()) - start;
 }
 
-/// What is wrong before a place in brackets at which ',' or a closing bracket was awaited.
+/// Returns what is wrong before a place in brackets where the parser expected ',' or a closing bracket.
 std::optional<SyntaxError> explain_in_brackets(std::string_view text, std::size_t offset,
                                                const Before& before) {
   const int line = position_of(text, offset).line;
@@ -145,7 +145,7 @@ SyntaxError wrong_bracket(std::string_view text, std::size_t offset, std::size_t
           fmt::format("close it with '{}'", closing(text[open]))};
 }
 
-/// What the text shows better than the parser's message does.
+/// Returns an explanation from the text itself; nullopt if the parser's message is the better one.
 std::optional<SyntaxError> explain_by_text(std::string_view text, std::size_t offset,
                                            std::string_view message, const Before& before) {
   const auto says = [&](std::string_view begin) { return message.substr(0, begin.size()) == begin; };

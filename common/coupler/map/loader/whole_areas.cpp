@@ -10,10 +10,6 @@
 namespace coupler::loader {
 namespace {
 
-std::uint32_t most_in_a_read(Table table, const Limits& limits) {
-  return holds_bits(table) ? limits.read_bits : limits.read_registers;
-}
-
 void check_others(const Area& area, const Area* begin, const Area* end, std::string_view key,
                   const Context& context) {
   const Area* const other = std::find_if(begin, end, [&](const Area& each) {

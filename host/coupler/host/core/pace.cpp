@@ -21,7 +21,7 @@ double rounded_down(double rate) {
   return rate >= 2 ? std::floor(rate) : std::max(0.1, std::floor(rate * 10) / 10);
 }
 
-/// Whether it has one rate only, and the fastest.
+/// The rates of a map: whether there is one only, and the fastest.
 struct Rates {
   double fastest = 0;
   bool is_one = true;

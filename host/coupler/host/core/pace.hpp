@@ -10,14 +10,14 @@
 
 namespace coupler::host {
 
-/// Whether a device keeps up with the rates of its map. A cycle that is left out now and then says nothing:
-/// a fifth of ten seconds' cycles does.
+/// Finds out whether a device keeps up with the rates of its map. It does not if a fifth of the cycles of ten
+/// seconds are left out; one that is left out now and then is no trouble.
 class Pace {
  public:
   /// To be called at least every second. Returns a warning when the device has become too slow: once, until
   /// it has kept up for a minute.
   std::optional<std::string> update(const Map& map, const DeviceSnapshot& now, Time at);
-  /// What is wrong, as long as it is; empty: it keeps up.
+  /// Returns what is wrong; empty while the device keeps up.
   const std::string& trouble() const { return trouble_; }
 
  private:

@@ -29,27 +29,21 @@ std::vector<std::unique_ptr<PointPublisher>> advertise_all(Node& node, const Map
   return result;
 }
 
-/// By point; null for those that are not stamped.
-std::vector<std::unique_ptr<PointPublisher>> advertise_stamped(Node& node, const Map& map,
-                                                               SubscriberCounts& subscribers,
-                                                               const WallTime& wall) {
+using AdvertiseWithTime = decltype(&Node::advertise_stamped);
+
+/// Advertises `<point>/<ending>` of each stamped point. By point; null for the others, and where a point of
+/// the map has that name.
+std::vector<std::unique_ptr<PointPublisher>> advertise_with_time(Node& node, const Map& map,
+                                                                 SubscriberCounts& subscribers,
+                                                                 const WallTime& wall,
+                                                                 std::string_view ending,
+                                                                 AdvertiseWithTime advertise) {
   std::vector<std::unique_ptr<PointPublisher>> result(map.points.size());
   for_each_point(node, map, "have their topics with stamps", [&](std::uint32_t i) {
-    if (map.points[i].host.stamped)
-      result[i] = node.advertise_stamped(topic(map, map.points[i].name) + "/stamped", map.points[i], i,
-                                         subscribers, wall);
+    if (!map.points[i].host.stamped) return;
+    if (const std::string name = fmt::format("{}/{}", map.points[i].name, ending); find(map, name) == nullptr)
+      result[i] = (node.*advertise)(topic(map, name), map.points[i], i, subscribers, wall);
   });
-  return result;
-}
-
-std::vector<std::unique_ptr<PointPublisher>> advertise_samples(Node& node, const Map& map,
-                                                               SubscriberCounts& subscribers,
-                                                               const WallTime& wall) {
-  std::vector<std::unique_ptr<PointPublisher>> result(map.points.size());
-  for (std::uint32_t i = 0; i < map.points.size() && !Shutdown::requested; ++i)
-    if (const std::string name = fmt::format("{}/sample", map.points[i].name);
-        map.points[i].host.stamped && find(map, name) == nullptr)
-      result[i] = node.advertise_sample(topic(map, name), map.points[i], i, subscribers, wall);
   return result;
 }
 
@@ -86,8 +80,8 @@ DeviceDriver::DeviceDriver(Node& node, const Map& map, std::unique_ptr<Link> lin
       values_(map_),
       subscribers_(map.points.size()),
       publishers_(advertise_all(node, map_, subscribers_)),
-      stamped_(advertise_stamped(node, map_, subscribers_, wall_)),
-      samples_(advertise_samples(node, map_, subscribers_, wall_)),
+      stamped_(advertise_with_time(node, map_, subscribers_, wall_, "stamped", &Node::advertise_stamped)),
+      samples_(advertise_with_time(node, map_, subscribers_, wall_, "sample", &Node::advertise_sample)),
       points_(publish_points(node, map_)),
       publish_online_(advertise_online(node, map)),
       publish_status_(node.advertise_status(topic(map, "status"), map)),

@@ -56,15 +56,15 @@ void DeviceServices::start(Node& node, Device device) {
   });
   read_calls_->offer_read(name("read"), [this](const std::string& point) { return answer_read(point); });
   if (map_.coupler_watchdog.present())
-    calls_->offer_trigger(name("reset_watchdog"), [this] { return answer_call(&Device::reset); });
-  urgent_calls_->offer_trigger(name("safe"), [this] { return answer_call(&Device::make_safe); });
+    calls_->offer_trigger(name("reset_watchdog"), [this] { return ask(&Device::reset); });
+  urgent_calls_->offer_trigger(name("safe"), [this] { return ask(&Device::make_safe); });
   if (can_schedule(map_)) {
     timed_calls_ = node.make_service_thread();
     timed_calls_->offer_schedule(name("schedule"), [this](const ServiceThread::ScheduleRequest& request) {
       return answer_schedule(request);
     });
     timed_calls_->offer_cancel(name("cancel_scheduled"),
-                               [this](std::uint32_t number) { return answer_cancel(number); });
+                               [this](std::uint32_t number) { return ask(&Device::cancel, number); });
     timed_calls_->offer_list(name("list_scheduled"), [this] { return answer_list(); });
     timed_calls_->start();
   }
@@ -87,6 +87,17 @@ void DeviceServices::stop() {
 }
 
 DeviceServices::~DeviceServices() { stop(); }
+
+template <class Answer, class... Parameters, class... Arguments>
+Answer DeviceServices::ask(std::function<std::future<Answer>(Parameters...)> Device::*call,
+                           const Arguments&... arguments) {
+  std::future<Answer> asked;
+  {
+    const std::lock_guard lock(mutex_);
+    if (device_) asked = ((*device_).*call)(arguments...);
+  }
+  return asked.valid() ? asked.get() : Answer{{}, "the driver ends"};
+}
 
 WriteTicket::Outcome DeviceServices::write(Write write) {
   WriteTicket ticket;
@@ -127,21 +138,7 @@ ScheduleAnswer DeviceServices::answer_schedule(const ServiceThread::ScheduleRequ
   ScheduledWrite what{*write, wall_.at(request.at), {}, request.at};
   what.duration = request.how_long.count() < 0 ? std::chrono::floor<milliseconds>(request.how_long)
                                                : std::chrono::ceil<milliseconds>(request.how_long);
-  std::future<ScheduleAnswer> asked;
-  {
-    const std::lock_guard lock(mutex_);
-    if (device_) asked = device_->schedule(what);
-  }
-  return asked.valid() ? asked.get() : ScheduleAnswer{0, "the driver ends"};
-}
-
-CallAnswer DeviceServices::answer_cancel(std::uint32_t number) {
-  std::future<CallAnswer> asked;
-  {
-    const std::lock_guard lock(mutex_);
-    if (device_) asked = device_->cancel(number);
-  }
-  return asked.valid() ? asked.get() : CallAnswer{false, "the driver ends"};
+  return ask(&Device::schedule, what);
 }
 
 std::vector<ServiceThread::ListedWrite> DeviceServices::answer_list() {
@@ -166,15 +163,6 @@ CallAnswer DeviceServices::answer_set(std::uint32_t index, bool on) {
       holds_bits(point.table) ? std::uint16_t{on} : codec::encode_part(on ? 1 : 0, point.format);
   const auto outcome = write(make_write(map_, index, {&value, 1}));
   return {outcome.outcome == Outcome::ok, outcome.text};
-}
-
-CallAnswer DeviceServices::answer_call(std::function<std::future<CallAnswer>()> Device::*call) {
-  std::future<CallAnswer> asked;
-  {
-    const std::lock_guard lock(mutex_);
-    if (device_) asked = ((*device_).*call)();
-  }
-  return asked.valid() ? asked.get() : CallAnswer{false, "the driver ends"};
 }
 
 ServiceThread::ReadAnswer DeviceServices::answer_read(const std::string& name) {

@@ -54,11 +54,12 @@ class DeviceServices {
   WriteTicket::Outcome refuse(const std::string& name, const std::string& why);
   WriteTicket::Outcome answer_write(const std::string& name, const std::string& text);
   ScheduleAnswer answer_schedule(const ServiceThread::ScheduleRequest& request);
-  CallAnswer answer_cancel(std::uint32_t number);
   std::vector<ServiceThread::ListedWrite> answer_list();
   ServiceThread::ReadAnswer answer_read(const std::string& name);
   CallAnswer answer_set(std::uint32_t index, bool on);
-  CallAnswer answer_call(std::function<std::future<CallAnswer>()> Device::*call);
+  /// Makes the call and waits for its answer, which says so where the driver ends.
+  template <class Answer, class... Parameters, class... Arguments>
+  Answer ask(std::function<std::future<Answer>(Parameters...)> Device::*call, const Arguments&... arguments);
   std::uint32_t index_of(const Point& point) const {
     return static_cast<std::uint32_t>(&point - map_.points.data());
   }

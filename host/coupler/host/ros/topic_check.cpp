@@ -17,7 +17,7 @@ constexpr std::string_view stamped_ends[] = {"/stamped", "/sample"};
 constexpr std::string_view one_by_one =
     "; the topic of a point and its /write are remapped one by one: remap the other one, too";
 
-/// What stands before the end; empty if the topic has another end.
+/// Returns the text before `end`; empty if the topic has another end.
 std::string before(std::string_view end, std::string_view topic) {
   if (topic.size() <= end.size() || topic.substr(topic.size() - end.size()) != end) return {};
   return std::string(topic.substr(0, topic.size() - end.size()));
@@ -30,7 +30,7 @@ std::string_view stamped_end(std::string_view topic) {
   return {};
 }
 
-/// What stands before it; empty if there is none.
+/// Returns the text before the end of a topic with stamps; empty if the topic has no such end.
 std::string before_stamped_end(std::string_view topic) {
   const std::string_view end = stamped_end(topic);
   return end.empty() ? std::string() : before(end, topic);

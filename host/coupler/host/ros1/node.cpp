@@ -146,25 +146,30 @@ std::unique_ptr<PointPublisher> Ros1Node::advertise(const std::string& topic, co
   });
 }
 
+template <class Messages, class PutStamp>
+std::unique_ptr<PointPublisher> Ros1Node::advertise_with_time(const std::string& topic, const Point& point,
+                                                              std::uint32_t index,
+                                                              SubscriberCounts& subscribers,
+                                                              const WallTime& wall) {
+  return with_stamped_message<Messages>(point, [&](auto kind) {
+    using Publisher = TypedPublisher<decltype(kind), TopicPublisher, PutStamp>;
+    return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers, PutStamp(wall)),
+                        true);
+  });
+}
+
 std::unique_ptr<PointPublisher> Ros1Node::advertise_stamped(const std::string& topic, const Point& point,
                                                             std::uint32_t index,
                                                             SubscriberCounts& subscribers,
                                                             const WallTime& wall) {
-  return with_stamped_message<Ros1Messages>(point, [&](auto kind) {
-    using Publisher = TypedPublisher<decltype(kind), TopicPublisher, Stamper>;
-    return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers, Stamper(wall)),
-                        true);
-  });
+  return advertise_with_time<Ros1Messages, Stamper>(topic, point, index, subscribers, wall);
 }
 
 std::unique_ptr<PointPublisher> Ros1Node::advertise_sample(const std::string& topic, const Point& point,
                                                            std::uint32_t index, SubscriberCounts& subscribers,
                                                            const WallTime& wall) {
-  return with_stamped_message<SampleMessages<Ros1Messages>>(point, [&](auto kind) {
-    using Publisher = TypedPublisher<decltype(kind), TopicPublisher, SampleStamper>;
-    return advertise_as(topic, point,
-                        std::make_unique<Publisher>(point, index, subscribers, SampleStamper(wall)), true);
-  });
+  return advertise_with_time<SampleMessages<Ros1Messages>, SampleStamper>(topic, point, index, subscribers,
+                                                                          wall);
 }
 
 std::shared_ptr<void> Ros1Node::publish_points(const std::string& topic, const Map& map) {

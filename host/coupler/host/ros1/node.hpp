@@ -48,6 +48,10 @@ class Ros1Node : public Node {
   void log_debug(const std::string& text) override;
 
  private:
+  template <class Messages, class PutStamp>
+  std::unique_ptr<PointPublisher> advertise_with_time(const std::string& topic, const Point& point,
+                                                      std::uint32_t index, SubscriberCounts& subscribers,
+                                                      const WallTime& wall);
   template <class Publisher>
   std::unique_ptr<PointPublisher> advertise_as(const std::string& topic, const Point& point,
                                                std::unique_ptr<Publisher> publisher, bool is_stamped);

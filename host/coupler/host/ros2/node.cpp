@@ -161,27 +161,31 @@ std::unique_ptr<PointPublisher> Ros2Node::advertise(const std::string& topic, co
   });
 }
 
+template <class Messages, class PutStamp>
+std::unique_ptr<PointPublisher> Ros2Node::advertise_with_time(const std::string& topic, const Point& point,
+                                                              std::uint32_t index,
+                                                              SubscriberCounts& subscribers,
+                                                              const WallTime& wall) {
+  return with_stamped_message<Messages>(point, [&](auto kind) {
+    using Kind = decltype(kind);
+    using Publisher = TypedPublisher<Kind, rcl::Publisher<typename Kind::Message>, PutStamp>;
+    return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers, PutStamp(wall)),
+                        true);
+  });
+}
+
 std::unique_ptr<PointPublisher> Ros2Node::advertise_stamped(const std::string& topic, const Point& point,
                                                             std::uint32_t index,
                                                             SubscriberCounts& subscribers,
                                                             const WallTime& wall) {
-  return with_stamped_message<Ros2Messages>(point, [&](auto kind) {
-    using Kind = decltype(kind);
-    using Publisher = TypedPublisher<Kind, rcl::Publisher<typename Kind::Message>, Stamper>;
-    return advertise_as(topic, point, std::make_unique<Publisher>(point, index, subscribers, Stamper(wall)),
-                        true);
-  });
+  return advertise_with_time<Ros2Messages, Stamper>(topic, point, index, subscribers, wall);
 }
 
 std::unique_ptr<PointPublisher> Ros2Node::advertise_sample(const std::string& topic, const Point& point,
                                                            std::uint32_t index, SubscriberCounts& subscribers,
                                                            const WallTime& wall) {
-  return with_stamped_message<SampleMessages<Ros2Messages>>(point, [&](auto kind) {
-    using Kind = decltype(kind);
-    using Publisher = TypedPublisher<Kind, rcl::Publisher<typename Kind::Message>, SampleStamper>;
-    return advertise_as(topic, point,
-                        std::make_unique<Publisher>(point, index, subscribers, SampleStamper(wall)), true);
-  });
+  return advertise_with_time<SampleMessages<Ros2Messages>, SampleStamper>(topic, point, index, subscribers,
+                                                                          wall);
 }
 
 std::shared_ptr<void> Ros2Node::publish_points(const std::string& topic, const Map& map) {

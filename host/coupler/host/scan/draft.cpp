@@ -21,7 +21,7 @@ constexpr std::uint32_t longest_of_singles = 4;
 constexpr std::uint32_t most_bits_in_comment = 32;
 constexpr std::uint32_t most_registers_in_comment = 8;
 
-/// What is known to be in some registers.
+/// A value that is known to be in some registers.
 struct Named {
   std::string name;
   Table table;

@@ -35,7 +35,8 @@ constexpr bool may_end_a_text(unsigned word) {
   return is_printable(word) && kind_of(static_cast<char>(word)) != Kind::other;
 }
 
-/// How often the kind of character changes from one to the next, but from a capital to the letters behind it.
+/// Counts how often the kind of character changes from one to the next. From a capital letter to the small
+/// ones behind it is no change.
 std::size_t roughness(std::string_view text) {
   std::size_t changes = 0;
   for (std::size_t i = 1; i < text.size(); ++i) {

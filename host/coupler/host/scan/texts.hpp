@@ -26,7 +26,7 @@ std::vector<FoundText> find_texts(const std::vector<TableFindings>& tables);
 /// A point as a map has it: "{address: 40, type: STRING, length: 12, order: AB}".
 std::string point_text(const FoundText& text);
 
-/// What it reads as, and what it reads as in the other order if that may be the right one.
+/// Returns the text, and the text in the other byte order if that may be the right one.
 std::string value_text(const FoundText& text);
 
 }  // namespace coupler::scan

@@ -19,7 +19,7 @@ namespace {
 using loader::Problems;
 using loader::shown;
 
-/// Where numbers stand, "-" and "N/A" are empty cells.
+/// Empties the cells "-" and "N/A" in the columns of numbers.
 void empty_cells_that_say_nothing(const std::vector<Column>& columns, std::vector<Row>& rows) {
   constexpr std::string_view of_numbers[] = {
       "address", "bit",     "count",    "length",       "scale",      "offset",

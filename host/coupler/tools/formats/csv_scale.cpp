@@ -37,15 +37,14 @@ bool may_be_scaled(const RowPoint& point) {
 /// A factor of 1 beside a text, a bit or a word says that there is none.
 void drop_factor_of_1(RowPoint& point) {
   const Entry* scale = loader::child(point.entry, "scale");
-  if (scale == nullptr || point.is_number() || loader::parse_number(scale->text) != 1.0) return;
-  point.entry.children.erase(point.entry.children.begin() + (scale - point.entry.children.data()));
+  if (scale != nullptr && !point.is_number() && loader::parse_number(scale->text) == 1.0)
+    drop(point.entry, "scale");
 }
 
-/// Behind "x10" there are none.
+/// A cell like "x10" has a factor and no units.
 void drop_empty_units(RowPoint& point) {
   const Entry* units = loader::child(point.entry, "units");
-  if (units != nullptr && units->text.empty())
-    point.entry.children.erase(point.entry.children.begin() + (units - point.entry.children.data()));
+  if (units != nullptr && units->text.empty()) drop(point.entry, "units");
 }
 
 void make_scaled_word_a_number(const RowView& row, RowPoint& point) {

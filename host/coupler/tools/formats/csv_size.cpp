@@ -51,15 +51,14 @@ void add_bit(const RowView& row, RowPoint& point, const Cell& address) {
 
 /// A column "Bits" has the width of the type in makers' tables, which the type says already; or "8-11".
 void read_bits(RowPoint& point) {
-  const auto found = std::find_if(point.entry.children.begin(), point.entry.children.end(),
-                                  [](const Entry& each) { return each.key == "bits"; });
-  if (found == point.entry.children.end() || found->kind != Entry::Kind::scalar) return;
+  Entry* found = find(point.entry, "bits");
+  if (found == nullptr || found->kind != Entry::Kind::scalar) return;
   std::string_view rest = found->text;
   const auto first = take_number(rest);
   if (!first) return;
   if (rest.empty()) {
     const unsigned width = point.type.type ? codec::width(*point.type.type) : 0;
-    if (loader::parse_unsigned(*first) == width) point.entry.children.erase(found);
+    if (loader::parse_unsigned(*first) == width) drop(point.entry, "bits");
     return;
   }
   drop_blanks(rest);
@@ -119,7 +118,7 @@ void add_length(const RowView& row, RowPoint& point, const Cell& address,
   }
 }
 
-/// What the table says of the number of registers must be what the type needs.
+/// Reports a number of registers that is not the one that the type needs.
 void check_registers(const RowView& row, const RowPoint& point, std::uint64_t given, const Cell& from) {
   const std::uint64_t count = std::min(number_of(point.entry, "count").value_or(1), most_registers);
   std::uint64_t needed = count;

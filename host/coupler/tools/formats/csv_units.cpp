@@ -67,7 +67,7 @@ std::optional<FactorAndUnits> factor_before(std::string_view text) {
   return result;
 }
 
-/// Where "x10", "*10", "/10" or ":10" begins; npos if nothing of that kind is in the text.
+/// Returns the place where "x10", "*10", "/10" or ":10" begins; npos if the text has nothing of that kind.
 std::size_t find_operator(std::string_view text) {
   for (std::size_t at = text.size(); at-- > 0;) {
     const bool begins_word = at == 0 || text[at - 1] == ' ' || text[at - 1] == '(';

@@ -72,7 +72,7 @@ class UnitPoints {
  public:
   void add(FoundPoint point, loader::Problems& problems);
 
-  /// Where its unit id stands first, or its first entity.
+  /// Returns the place of its first unit id, or of its first entity.
   loader::Position at() const { return at_; }
   void begin_at(loader::Position at) {
     if (at_.line == 0) at_ = at;
@@ -111,7 +111,8 @@ struct RegisterValue {
   bool is_number = true;
 };
 
-/// How many values follow each other: one, and those of `virtual_count` or `slave_count`, its older name.
+/// Returns how many values follow each other: one, and those of `virtual_count` or `slave_count`, its older
+/// name.
 unsigned elements_of(Settings& settings, unsigned most);
 
 /// Empty, with the reason in the problems, if the map has no type for it.
@@ -170,7 +171,7 @@ class Entity {
   unsigned interval_ = 0;
 };
 
-/// Where an entity says its unit id: its `device_address`, or else its `slave`; nullptr: nowhere.
+/// Returns the unit id of an entity: its `device_address`, or else its `slave`; nullptr if it has neither.
 const loader::Entry* unit_of(const loader::Entry& entity);
 
 /// Reads one climate.

@@ -152,7 +152,7 @@ std::string kept_text(const std::vector<Block>& blocks) {
   return kept;
 }
 
-/// Where "platform: modbus" stands: the form of old versions, as `sensor: [{platform: modbus, …}]`.
+/// Returns the places of "platform: modbus": the form of old versions, as `sensor: [{platform: modbus, …}]`.
 std::vector<Position> old_forms(std::string_view text) {
   std::vector<Position> places;
   int number = 0;

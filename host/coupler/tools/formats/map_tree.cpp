@@ -134,6 +134,11 @@ void set(Entry& parent, Entry child) {
     parent.children.push_back(std::move(child));
 }
 
+void drop(Entry& parent, std::string_view key) {
+  if (const Entry* found = loader::child(parent, key))
+    parent.children.erase(parent.children.begin() + (found - parent.children.data()));
+}
+
 std::string flow(const Entry& value) {
   if (value.kind == Entry::Kind::null) return "null";
   if (value.kind == Entry::Kind::scalar)

@@ -23,6 +23,9 @@ loader::Entry& make_section(loader::Entry& parent, std::string_view key, loader:
 /// In place of the child with the same key, or at the end.
 void set(loader::Entry& parent, loader::Entry child);
 
+/// Removes the child with that key, if there is one.
+void drop(loader::Entry& parent, std::string_view key);
+
 /// The tree of a map as a YAML file in this project's style: the device's keys in the order of the key table,
 /// then `mapping:` with one line a point; words of choices as the documentation spells them. Keys that no map
 /// has, and tables without points, are left out. `comment` is the first line.

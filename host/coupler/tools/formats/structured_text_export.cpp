@@ -38,11 +38,7 @@ std::string remarks(const Point& point, modbus::Range place) {
   std::string text = place_text(point.table, place);
   const codec::Format& format = point.format;
   if (!holds_bits(point.table)) {
-    if (format.type == Type::BOOL) text += fmt::format(" bit {}", format.bit);
-    if (format.bits != 0)
-      text += fmt::format(" bits {} to {}", format.bit, format.bit + format.bits - 1);
-    else if (codec::width(format.type) == 8)
-      text += format.half == codec::Half::high ? " high byte" : " low byte";
+    if (is_partial(point)) text += " " + part_text(point);
     text += fmt::format(", {} {}", to_string(format.type), codec::order_text(format));
     if (format.type == Type::STRING)
       text += fmt::format(", {} bytes {}", format.length, codec::to_string(format.encoding));

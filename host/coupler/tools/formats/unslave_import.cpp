@@ -127,8 +127,8 @@ std::optional<ForeignUnit> read_slave(const Entry& slave, Problems& problems) {
   return unit;
 }
 
-/// Where the settings of the serial port stand: in the section `port`, as in the manual, or `serial`; or
-/// beside `port`. nullptr: nowhere.
+/// Returns the settings of the serial port: the section `port`, as in the manual, or `serial`; or those
+/// beside `port`. nullptr if there are none.
 const Entry* line_of(const Entry& root) {
   for (const std::string_view key : {"port", "serial"}) {
     const Entry* line = loader::child(root, key);
