@@ -83,7 +83,7 @@ check "a client writes and reads" wait_until says traffic going
 echo "# maps that are refused"
 before=$(worker)
 status=0; said=$(echo 'name: [' >"$map"; "$bin/coupler-node" --reload "$(pid node)" 2>&1) || status=$?
-expect "who asks for one that is no map hears why" "1 yes" "$status $(grep -q 'has no closing one' <<<"$said" && echo yes)"
+expect "who asks for one that is no map hears why" "1 yes" "$status $(grep -qF "the '[' is never closed" <<<"$said" && echo yes)"
 check "one that is no map" reload_with "$refused" <<<'name: ['
 check "its place is told" says node 'map.yaml:[0-9]+:[0-9]+: error'
 check "a line that belongs to somebody else" reload_with "$refused" < <(sed 's/offset: 3}/offset: 6}/' reload.yaml)
