@@ -192,10 +192,11 @@ head -c 4000000 >"$map.long" < <(yes '  a_point_of_a_long_map: {address: 0, type
 mv "$map.long" "$map"
 kill -HUP "$(pid node)"
 check "a long one is being read" wait_until pgrep -x coupler-map
+reader=$(pgrep -x coupler-map)
+kill -STOP "$reader"  # it shall not have read all of it before the rest has happened
 kill -KILL "$before"
 check "the output is safe meanwhile, against its pull" wait_until level_is 0 0
-check "the map is still being read" pgrep -x coupler-map
 check "another worker process is started" wait_until new_worker "$before"
-reader=$(pgrep -x coupler-map)
+check "the map is still being read" pgrep -x coupler-map
 check "the node ends well at SIGTERM, at once" stop node TERM
 check "and so does the process that reads" wait_until ended "$reader"
