@@ -86,13 +86,11 @@ class HttpServer final : public httplib::Server {
   auto process(Stream& stream, long)
       -> decltype(this->process_request(stream, std::string(), 0, std::string(), 0, true,
                                         std::declval<bool&>(), without_ranges)) {
-    std::string remote, local;
-    int remote_port = 0, local_port = 0;
-    stream.get_remote_ip_and_port(remote, remote_port);
-    stream.get_local_ip_and_port(local, local_port);
+    std::string local;
+    int port = 0;
+    stream.get_local_ip_and_port(local, port);
     bool is_closed = false;
-    return this->process_request(stream, remote, remote_port, local, local_port, true, is_closed,
-                                 without_ranges);
+    return this->process_request(stream, std::string(), 0, local, port, true, is_closed, without_ranges);
   }
 
   inline static thread_local RequestStream* stream_ = nullptr;  ///< of the request that is answered

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/panel/request_stream.hpp"
 
-#include <arpa/inet.h>
+#include <netdb.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -9,7 +9,6 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <cstring>
 
 #include "coupler/base/descriptor.hpp"
 
@@ -19,29 +18,6 @@ namespace {
 constexpr std::chrono::milliseconds slice{100};          ///< after which `ending` is looked at
 constexpr std::chrono::seconds longest_write{30};        ///< of one that goes on
 constexpr std::size_t largest = std::size_t{20} * 1024;  ///< bytes of a request, with its body
-
-using NameOf = int (*)(int, sockaddr*, socklen_t*);
-
-void address_of(NameOf name_of, socket_t socket, std::string& ip, int& port) {
-  sockaddr_storage address{};
-  socklen_t length = sizeof address;
-  // sockaddr_storage is what the call of the sockets API fills with the address of any family.
-  if (name_of(socket, reinterpret_cast<sockaddr*>(&address), &length) != 0) return;
-  std::array<char, INET6_ADDRSTRLEN> text{};
-  const void* bytes = nullptr;
-  sockaddr_in v4{};
-  sockaddr_in6 v6{};
-  if (address.ss_family == AF_INET) {
-    std::memcpy(&v4, &address, sizeof v4);
-    bytes = &v4.sin_addr;
-    port = ntohs(v4.sin_port);
-  } else {
-    std::memcpy(&v6, &address, sizeof v6);
-    bytes = &v6.sin6_addr;
-    port = ntohs(v6.sin6_port);
-  }
-  if (::inet_ntop(address.ss_family, bytes, text.data(), text.size()) != nullptr) ip = text.data();
-}
 
 }  // namespace
 
@@ -121,12 +97,17 @@ ssize_t RequestStream::write(const char* from, std::size_t size) {
   return static_cast<ssize_t>(size);
 }
 
-void RequestStream::get_remote_ip_and_port(std::string& ip, int& port) const {
-  address_of(::getpeername, socket_, ip, port);
-}
-
-void RequestStream::get_local_ip_and_port(std::string& ip, int& port) const {
-  address_of(::getsockname, socket_, ip, port);
+void RequestStream::get_local_ip_and_port(std::string& ip, int& /*port*/) const {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  // sockaddr_storage is what the call of the sockets API fills with the address of any family.
+  auto* const any = reinterpret_cast<sockaddr*>(&address);
+  std::array<char, NI_MAXHOST> text{};
+  if (::getsockname(socket_, any, &size) != 0 ||
+      ::getnameinfo(any, size, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST) != 0)
+    return;
+  ip = text.data();
+  ip.erase(std::min(ip.find('%'), ip.size()));  // the interface of a link-local address: no browser sends it
 }
 
 }  // namespace coupler::host

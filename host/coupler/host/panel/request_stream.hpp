@@ -45,7 +45,8 @@ class RequestStream : public httplib::Stream {
   /// The other end is there and takes more.
   bool is_writable() const final;
   ssize_t write(const char* from, std::size_t size) final;
-  void get_remote_ip_and_port(std::string& ip, int& port) const final;
+  /// Only the local address is told: the panel asks for nothing else.
+  void get_remote_ip_and_port(std::string& /*ip*/, int& /*port*/) const final {}
   void get_local_ip_and_port(std::string& ip, int& port) const final;
   socket_t socket() const final { return socket_; }
 
