@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/tools/probe_scan.hpp"
 
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
 #include <cstddef>
+#include <cstdio>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,10 +16,60 @@
 #include "coupler/map/fields.hpp"
 #include "coupler/tools/interruption.hpp"
 #include "coupler/tools/modbus_client.hpp"
-#include "coupler/tools/progress_bar.hpp"
 
 namespace coupler::tools {
 namespace {
+
+constexpr std::uint32_t bar_width = 24;
+constexpr std::chrono::milliseconds frame{100};
+constexpr auto clear_line = "\r\x1B[K";
+
+/// Shows on standard error how far a scan is: a bar on a terminal, otherwise a line for each step.
+class ProgressBar : public scan::ScanProgress {
+ public:
+  ProgressBar() : is_terminal_(::isatty(STDERR_FILENO) == 1) {}
+  ~ProgressBar() override {
+    if (is_terminal_) std::fputs(clear_line, stderr);
+  }
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  void begins(std::string_view step) override {
+    step_ = where_.empty() ? std::string(step) : fmt::format("{} {}", step, where_);
+    if (is_terminal_)
+      draw(0, 1, 0);
+    else
+      fmt::print(stderr, "looking at {}\n", step_);
+  }
+
+  void moved(std::uint32_t done, std::uint32_t total, std::uint64_t requests) override {
+    const bool is_due = done >= total || requests == 0 || std::chrono::steady_clock::now() - drawn_ >= frame;
+    if (is_terminal_ && is_due) draw(done, total, requests);
+  }
+
+  bool wants_end() const override { return ended_; }
+
+  /// Said with each step from now on, as "at 9600 8N1".
+  void where(std::string_view text) { where_ = text; }
+
+  /// From any thread.
+  void end() { ended_ = true; }
+
+ private:
+  void draw(std::uint32_t done, std::uint32_t total, std::uint64_t requests) {
+    drawn_ = std::chrono::steady_clock::now();
+    const std::uint32_t filled = total == 0 ? bar_width : done * bar_width / total;
+    fmt::print(stderr, "{}[{:#<{}}{:.<{}}] {}", clear_line, "", filled, "", bar_width - filled, step_);
+    if (requests > 0) fmt::print(stderr, ", requests so far: {}", requests);
+    std::fflush(stderr);
+  }
+
+  bool is_terminal_;
+  std::string step_;
+  std::string where_;
+  std::chrono::steady_clock::time_point drawn_{};
+  std::atomic<bool> ended_{false};
+};
 
 scan::Findings look(ProbeCall& call, ProgressBar& progress) {
   ModbusClient client(call.connection);
