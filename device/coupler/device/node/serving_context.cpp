@@ -7,11 +7,32 @@
 #include <optional>
 #include <utility>
 
+#include "coupler/codec/number.hpp"
+#include "coupler/device/core/image.hpp"
 #include "coupler/device/node/this_machine.hpp"
 #include "coupler/map/identity.hpp"
 
 namespace coupler::device {
 namespace {
+
+/// Channels without hardware (`--sim`): outputs take what a PWM, or a DAC that tells no limits, takes, and
+/// inputs have the value that the image has, which the field side sets.
+class SimulatedChannels final : public Channels {
+ public:
+  /// The image outlives it.
+  explicit SimulatedChannels(const Image& image) : image_(image) {}
+
+  std::optional<double> read(const Point& input, TimePoint) override {
+    return codec::published(image_.find(input.table, range(input)).data(), input.format, input.scale);
+  }
+  bool accepts(const Point& output, double value) const override {
+    return !output.pwm.present() || is_duty_cycle(value);
+  }
+  Outcome drive(const Point&, double) override { return Outcome::done; }
+
+ private:
+  const Image& image_;
+};
 
 /// The address at which the node before this one listened.
 struct Before {

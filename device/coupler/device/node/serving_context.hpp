@@ -7,8 +7,8 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "coupler/device/analogue/simulated_channels.hpp"
 #include "coupler/device/analogue/sysfs_channels.hpp"
+#include "coupler/device/core/channels.hpp"
 #include "coupler/device/core/hardware.hpp"
 #include "coupler/device/gpio/wiring.hpp"
 #include "coupler/device/net/listener.hpp"
@@ -43,10 +43,10 @@ struct ServingContext {
   std::unique_ptr<PreparedWiring> prepared;  ///< before it is in force
   std::unique_ptr<Wiring> wiring;            ///< when it is
   std::unique_ptr<SharedState> state;
-  std::unique_ptr<SysfsChannels> channels;       ///< null: no register has one
-  std::unique_ptr<SimulatedChannels> simulated;  ///< in place of those; null: not simulated
-  std::unique_ptr<AnaloguePoints> analogue;      ///< the points that have either; null: there is neither
-  std::unique_ptr<HookedPoints> hooked;          ///< null: no firmware's code is behind points
+  std::unique_ptr<SysfsChannels> channels;   ///< null: no register has one
+  std::unique_ptr<Channels> simulated;       ///< in place of those; null: not simulated
+  std::unique_ptr<AnaloguePoints> analogue;  ///< the points that have either; null: there is neither
+  std::unique_ptr<HookedPoints> hooked;      ///< null: no firmware's code is behind points
 
   /// Uses channels again whose device is plugged in again; drives outputs as before, or safe if `safe`. True:
   /// there are some.
