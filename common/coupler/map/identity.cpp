@@ -19,6 +19,7 @@ constexpr bool are_in_the_report() {
 }
 static_assert(are_in_the_report(),
               "A counter behind the report is a further field: nodes that do not have it are out there");
+static_assert(sizeof(Counts) == counters.size() * sizeof(std::uint32_t), "each count has a row");
 
 constexpr std::size_t hostname_registers = std::tuple_size_v<decltype(Machine::hostname)> / 2;
 static_assert(at_hostname + hostname_registers <= at_functions);
@@ -53,7 +54,7 @@ std::optional<Report> read_report(const std::array<std::uint16_t, report_size>& 
   const auto counter = [&](std::size_t at) { return codec::decode<std::uint32_t>(&area[at], Order::ABCD); };
   report->has_statistics = true;
   report->uptime = counter(at_uptime);
-  for (std::size_t i = 0; i < counters.size(); ++i) report->counts[i] = counter(counters[i].at);
+  for (const Counter& each : counters) report->counts.*each.count = counter(each.at);
   return report;
 }
 

@@ -32,20 +32,8 @@ enum : std::uint16_t {
   at_map_crc = 9,          ///< CRC-32 of the map, 2 registers
   at_watchdog_state = 11,  ///< 0 not configured, 1 idle, 2 armed, 3 expired
   at_watchdog_left = 12,   ///< remaining time, ms (65535: that or more)
-  at_statistics = 13,      ///< from here: 32-bit counters, most significant register first
+  at_statistics = 13,      ///< from here: 32-bit counters, most significant register first: `counters`
   at_uptime = 13,          ///< seconds
-  at_requests = 15,
-  at_exceptions = 17,
-  at_connections = 19,  ///< accepted since start
-  at_hardware_errors = 21,
-  at_watchdog_trips = 23,
-  at_events_lost = 25,    ///< edges of counted inputs, at least
-  at_exceptions_of = 27,  ///< by code: 01, 02, 03, 04
-  at_refusals = 35,       ///< connections of clients that may not connect
-  at_evictions = 37,      ///< connections closed to make room
-  at_foreign_units = 39,  ///< requests for another unit id
-  at_bad_frames = 41,     ///< connections closed for what they sent
-  at_timeouts = 43,       ///< connections closed for what they did not send or read in time
   at_further = 45,    ///< how many registers of further fields follow; the first nodes do not have this one
   at_serial = 46,     ///< of the machine, a hash, 4 registers, most significant first; 0: unknown
   at_hostname = 50,   ///< 32 registers, ASCII, two characters each, the first one high; zeros behind it
@@ -85,38 +73,61 @@ std::optional<Head> read_head(const std::array<std::uint16_t, head_size>& area);
 /// The names of the values of at_watchdog_state.
 constexpr std::array<std::string_view, 4> watchdog_states{"not configured", "idle", "armed", "expired"};
 
-/// A counter of the statistics.
+/// The counts of a node since its start. They wrap.
+struct Counts {
+  std::uint32_t requests = 0;       ///< answered, exceptions included
+  std::uint32_t exceptions = 0;     ///< of those
+  std::uint32_t exceptions_01 = 0;  ///< of those, by code
+  std::uint32_t exceptions_02 = 0;
+  std::uint32_t exceptions_03 = 0;
+  std::uint32_t exceptions_04 = 0;
+  std::uint32_t hardware_errors = 0;  ///< requests that a line or channel failed, exception 04
+  std::uint32_t events_lost = 0;      ///< edges of counted inputs that were not seen, at least
+  std::uint32_t watchdog_trips = 0;   ///< outputs went to their safe state since no client fed the watchdog
+  std::uint32_t foreign_units = 0;    ///< requests for another unit id, not answered
+  std::uint32_t connections = 0;      ///< accepted
+  std::uint32_t refusals = 0;         ///< connections of clients that may not connect
+  std::uint32_t evictions = 0;        ///< connections closed to make room for new ones
+  std::uint32_t bad_frames = 0;       ///< connections closed for what they sent
+  std::uint32_t timeouts = 0;         ///< connections closed for what they did not send or read in time
+};
+
+/// A counter, and its place in the area.
 struct Counter {
   std::uint16_t at;
+  std::uint32_t Counts::*count;
   std::string_view key;   ///< for programs
   std::string_view text;  ///< for people
 };
 constexpr std::array<Counter, 15> counters{{
-    {at_requests, "requests", "requests answered"},
-    {at_exceptions, "exceptions", "of these, with an exception"},
-    {at_exceptions_of, "exceptions_01", "exception 01 (illegal function)"},
-    {at_exceptions_of + 2, "exceptions_02", "exception 02 (illegal data address)"},
-    {at_exceptions_of + 4, "exceptions_03", "exception 03 (illegal data value)"},
-    {at_exceptions_of + 6, "exceptions_04", "exception 04 (server device failure)"},
-    {at_foreign_units, "foreign_units", "requests for another unit id"},
-    {at_connections, "connections", "connections accepted"},
-    {at_refusals, "connections_refused", "connections refused by 'allow'"},
-    {at_evictions, "connections_evicted", "connections closed to make room"},
-    {at_bad_frames, "connections_bad_frames", "connections closed for a bad frame"},
-    {at_timeouts, "connections_timed_out", "connections closed by a timeout"},
-    {at_hardware_errors, "hardware_errors", "hardware errors"},
-    {at_events_lost, "events_lost", "events lost"},
-    {at_watchdog_trips, "watchdog_trips", "times the watchdog expired"},
+    {15, &Counts::requests, "requests", "requests answered"},
+    {17, &Counts::exceptions, "exceptions", "of these, with an exception"},
+    {27, &Counts::exceptions_01, "exceptions_01", "exception 01 (illegal function)"},
+    {29, &Counts::exceptions_02, "exceptions_02", "exception 02 (illegal data address)"},
+    {31, &Counts::exceptions_03, "exceptions_03", "exception 03 (illegal data value)"},
+    {33, &Counts::exceptions_04, "exceptions_04", "exception 04 (server device failure)"},
+    {39, &Counts::foreign_units, "foreign_units", "requests for another unit id"},
+    {19, &Counts::connections, "connections", "connections accepted"},
+    {35, &Counts::refusals, "connections_refused", "connections refused by 'allow'"},
+    {37, &Counts::evictions, "connections_evicted", "connections closed to make room"},
+    {41, &Counts::bad_frames, "connections_bad_frames", "connections closed for a bad frame"},
+    {43, &Counts::timeouts, "connections_timed_out", "connections closed by a timeout"},
+    {21, &Counts::hardware_errors, "hardware_errors", "hardware errors"},
+    {25, &Counts::events_lost, "events_lost", "events lost"},
+    {23, &Counts::watchdog_trips, "watchdog_trips", "times the watchdog expired"},
 }};
+/// The counts of exceptions, by code: 01, 02, 03, 04.
+constexpr std::array<std::uint32_t Counts::*, 4> exceptions_of{
+    {&Counts::exceptions_01, &Counts::exceptions_02, &Counts::exceptions_03, &Counts::exceptions_04}};
 
 /// The part of the identity that every node has.
 struct Report {
   Head head;
   std::uint16_t watchdog_state = 0;
-  std::uint16_t watchdog_left = 0;                      ///< ms
-  bool has_statistics = false;                          ///< the rest is known: not every client may read it
-  std::uint32_t uptime = 0;                             ///< s
-  std::array<std::uint32_t, counters.size()> counts{};  ///< in the order of `counters`
+  std::uint16_t watchdog_left = 0;  ///< ms
+  bool has_statistics = false;      ///< the rest is known: not every client may read it
+  std::uint32_t uptime = 0;         ///< s
+  Counts counts;
 };
 
 /// nullopt: as read_head().

@@ -144,8 +144,8 @@ ordered_json functions_json(const identity::Functions& functions) {
 
 ordered_json statistics_json(const Report& report) {
   ordered_json json = ordered_json::object();
-  for (std::size_t i = 0; i < identity::counters.size(); ++i)
-    json[std::string(identity::counters[i].key)] = report.counts[i];
+  for (const identity::Counter& counter : identity::counters)
+    json[std::string(counter.key)] = report.counts.*counter.count;
   return json;
 }
 
@@ -193,8 +193,8 @@ std::string status_text(const NodeStatus& status, const Connection& where) {
   if (!report.has_statistics)
     return text + row("statistics", "not for clients that may not read every point");
   text += row("uptime", uptime_text(report.uptime));
-  for (std::size_t i = 0; i < identity::counters.size(); ++i)
-    text += row(identity::counters[i].text, fmt::to_string(report.counts[i]));
+  for (const identity::Counter& counter : identity::counters)
+    text += row(counter.text, fmt::to_string(report.counts.*counter.count));
   return text;
 }
 

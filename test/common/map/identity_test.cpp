@@ -126,7 +126,8 @@ TEST(Identity, The_report_holds_each_counter_of_the_area_once) {
   EXPECT_EQ(report->watchdog_state, 2);
   EXPECT_EQ(report->watchdog_left, 345);
   EXPECT_EQ(report->uptime, 13U << 16U | 14U);
-  std::set<std::uint32_t> counts(report->counts.begin(), report->counts.end());
+  std::set<std::uint32_t> counts;
+  for (const Counter& each : counters) counts.insert(report->counts.*each.count);
   std::set<std::uint32_t> expected;
   for (std::uint32_t at = at_uptime + 2; at < report_size; at += 2) expected.insert(at << 16U | (at + 1));
   EXPECT_EQ(counts, expected);

@@ -117,7 +117,7 @@ TEST_F(HookedNode, What_the_code_refuses_when_it_is_due_is_told_as_failed_and_ch
 TEST_F(HookedNode, A_refused_value_is_an_exception_but_no_hardware_error) {
   hooks.refused = {1, 7};
   EXPECT_EQ(write(0, {7}), failure);
-  EXPECT_EQ(statistics.exceptions_of[3], 1U);
+  EXPECT_EQ(statistics.exceptions_04, 1U);
   EXPECT_EQ(statistics.hardware_errors, 0U);
 }
 

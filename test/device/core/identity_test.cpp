@@ -46,10 +46,10 @@ TEST(Identity, The_counters_are_up_to_date_when_they_are_read) {
     return codec::decode<std::uint32_t>(&area[at], codec::Order::ABCD);
   };
   EXPECT_EQ(counter(identity::at_uptime), 70000U);
-  EXPECT_EQ(counter(identity::at_requests), 2U);
-  EXPECT_EQ(counter(identity::at_exceptions), 1U);
-  EXPECT_EQ(counter(identity::at_connections), 0x12345U);
-  EXPECT_EQ(counter(identity::at_hardware_errors), 0U);
+  EXPECT_EQ(counter(15), 2U);
+  EXPECT_EQ(counter(17), 1U);
+  EXPECT_EQ(counter(19), 0x12345U);
+  EXPECT_EQ(counter(21), 0U);
 }
 
 TEST(Identity, Exceptions_are_counted_by_their_code) {
@@ -61,7 +61,7 @@ TEST(Identity, Exceptions_are_counted_by_their_code) {
   for (int i = 0; i < 4; ++i) node.ask(pdu(5, {0, 0}));  // 04
   const auto area = registers(node.ask(pdu(4, {0xFF00, identity::size})));
   for (std::uint32_t code = 1; code <= 4; ++code) {
-    const auto* counter = &area.at(identity::at_exceptions_of + 2 * (code - 1));
+    const auto* counter = &area.at(27 + 2 * (code - 1));
     EXPECT_EQ(codec::decode<std::uint32_t>(counter, codec::Order::ABCD), code);
   }
 }
@@ -73,7 +73,7 @@ TEST(Identity, What_happens_to_connections_is_counted) {
   node.statistics.foreign_units = 3;
   node.statistics.bad_frames = 4;
   node.statistics.timeouts = 0x50000;
-  const auto area = registers(node.ask(pdu(4, {0xFF00 + identity::at_refusals, 10})));
+  const auto area = registers(node.ask(pdu(4, {0xFF23, 10})));
   EXPECT_THAT(area, ElementsAre(0, 1, 0, 2, 0, 3, 0, 4, 5, 0));
 }
 

@@ -171,7 +171,7 @@ TEST_F(Waiting, What_is_not_allowed_is_exception_03) {
   Pdu cut = request(0);
   cut.pop_back();
   for (const Pdu& wrong : {long_wait, version, cut}) EXPECT_EQ(send(wrong)[8], 3);
-  EXPECT_EQ(node_.statistics.exceptions_of[2], 3U);
+  EXPECT_EQ(node_.statistics.exceptions_03, 3U);
 }
 
 TEST_F(Waiting, It_feeds_the_watchdog_when_it_comes_and_not_when_it_is_answered) {

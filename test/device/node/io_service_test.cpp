@@ -79,7 +79,8 @@ TEST(ShutdownSummary, Has_every_statistic_that_is_not_0_in_one_line) {
   statistics.started = TimePoint() + 10s;
   statistics.requests = 1000;
   statistics.exceptions = 14;
-  statistics.exceptions_of = {3, 0, 0, 11};
+  statistics.exceptions_01 = 3;
+  statistics.exceptions_04 = 11;
   statistics.hardware_errors = 1;
   statistics.events_lost = 2;
   statistics.watchdog_trips = 3;

@@ -30,7 +30,7 @@ struct NodeStatusTest : testing::Test {
   void serve() {
     device.serve(fakes::MapBuilder().coil("a", 0).build()->map());
     put(identity::at_watchdog_state, 2);
-    put(identity::at_requests + 1, 42);
+    put(16, 42);  // requests
     std::array<std::uint16_t, identity::size> area{};
     identity::write_further({identity::machine_of("cell-7", 7), {}, 0}, area.data());
     for (std::uint32_t at = identity::at_further; at < identity::size; ++at) put(at, area[at]);
@@ -48,7 +48,7 @@ TEST_F(NodeStatusTest, A_node_tells_all_of_it) {
   EXPECT_FALSE(status.error);
   ASSERT_TRUE(status.report);
   EXPECT_EQ(status.report->watchdog_state, 2);
-  EXPECT_EQ(status.report->counts.front(), 42U);
+  EXPECT_EQ(status.report->counts.requests, 42U);
   EXPECT_EQ(hostname_of(status.further.machine), "cell-7");
   EXPECT_THAT(status.identification, ElementsAre(Pair(1, "cell")));
   EXPECT_FALSE(device.connected) << "somebody else may need it";

@@ -18,8 +18,8 @@ NodeStatus node() {
   NodeStatus status;
   status.at = std::chrono::system_clock::time_point(std::chrono::milliseconds(1500));
   status.report = identity::Report{{0x0123456789ABCDEF, 300, 0xF409A1FE}, 2, 345, true, 93784, {}};
-  for (std::size_t i = 0; i < identity::counters.size(); ++i)
-    status.report->counts[i] = 1000 + static_cast<std::uint32_t>(i);
+  std::uint32_t count = 1000;
+  for (const identity::Counter& counter : identity::counters) status.report->counts.*counter.count = count++;
   status.further = {identity::machine_of("cell-7", 0xAB), {true, true}, 2000};
   status.identification = {{0, "OpenCoupler"}, {1, "press"}, {2, "0.1.0"}, {0x80, "x"}};
   return status;

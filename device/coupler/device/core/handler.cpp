@@ -79,7 +79,7 @@ std::size_t Handler::handle(modbus::Bytes request, ClientSession& session, TimeP
   }
   ++statistics_.exceptions;
   const auto which = static_cast<std::size_t>(done.error()) - 1;
-  if (which < statistics_.exceptions_of.size()) ++statistics_.exceptions_of[which];
+  if (which < identity::exceptions_of.size()) ++(statistics_.*identity::exceptions_of[which]);
   return modbus::reply_exception(request[0], done.error(), reply);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 
 #include "coupler/base/version.hpp"
 #include "coupler/codec/number.hpp"
@@ -23,6 +24,13 @@ std::array<char, 16> hexadecimal(std::uint64_t value) {
   return digits;
 }
 
+/// Unrolled, not a loop: a loop would put the names of the counters into a microcontroller's flash.
+template <std::size_t... i>
+void write_counts(const identity::Counts& counts, std::uint16_t* area, std::index_sequence<i...>) {
+  (codec::encode(counts.*identity::counters[i].count, codec::Order::ABCD, area + identity::counters[i].at),
+   ...);
+}
+
 }  // namespace
 
 void write_identity(const Map& map, const identity::Machine& machine, const identity::Functions& functions,
@@ -35,24 +43,9 @@ void write_identity(const Map& map, const identity::Machine& machine, const iden
 
 void write_statistics(const Statistics& statistics, TimePoint now, Image& image) {
   const auto area = area_of(image);
-  const auto put = [&](std::size_t at, std::uint32_t value) {
-    codec::encode(value, codec::Order::ABCD, &area[at]);
-  };
   const auto uptime = std::chrono::duration_cast<std::chrono::seconds>(now - statistics.started);
-  put(identity::at_uptime, static_cast<std::uint32_t>(uptime.count()));
-  put(identity::at_requests, statistics.requests);
-  put(identity::at_exceptions, statistics.exceptions);
-  put(identity::at_connections, statistics.connections);
-  put(identity::at_hardware_errors, statistics.hardware_errors);
-  put(identity::at_watchdog_trips, statistics.watchdog_trips);
-  put(identity::at_events_lost, statistics.events_lost);
-  for (std::size_t i = 0; i < statistics.exceptions_of.size(); ++i)
-    put(identity::at_exceptions_of + 2 * i, statistics.exceptions_of[i]);
-  put(identity::at_refusals, statistics.refusals);
-  put(identity::at_evictions, statistics.evictions);
-  put(identity::at_foreign_units, statistics.foreign_units);
-  put(identity::at_bad_frames, statistics.bad_frames);
-  put(identity::at_timeouts, statistics.timeouts);
+  codec::encode(static_cast<std::uint32_t>(uptime.count()), codec::Order::ABCD, &area[identity::at_uptime]);
+  write_counts(statistics, area.data(), std::make_index_sequence<identity::counters.size()>());
 }
 
 void write_watchdog(const OutputWatchdog& watchdog, TimePoint now, Image& image) {

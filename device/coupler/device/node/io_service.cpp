@@ -56,8 +56,8 @@ std::uint32_t random_epoch() {
 /// " (01: 2, 03: 1)"; nothing if there were none.
 std::string by_code(const Statistics& statistics) {
   std::string text;
-  for (std::size_t i = 0; i < statistics.exceptions_of.size(); ++i)
-    if (const auto count = statistics.exceptions_of[i]; count != 0)
+  for (std::size_t i = 0; i < identity::exceptions_of.size(); ++i)
+    if (const auto count = statistics.*identity::exceptions_of[i]; count != 0)
       text += fmt::format("{}{:02}: {}", text.empty() ? " (" : ", ", i + 1, count);
   return text.empty() ? text : text + ")";
 }
