@@ -13,16 +13,13 @@ Range hull(Range a, Range b) {
   return Range::of(start, std::max(a.end(), b.end()) - start);
 }
 
-Range read_extent(const Map& map, const Point& point) {
-  const Range own = read_range(point);
+Range read_extent(const Map& map, Table table, Range own) {
   const auto* area =
       std::partition_point(map.read_whole.begin(), map.read_whole.end(), [&](const TableRange& each) {
-        return index(each.table) < index(point.table) ||
-               (each.table == point.table && each.range.end() <= own.start());
+        return index(each.table) < index(table) || (each.table == table && each.range.end() <= own.start());
       });
   Range extent = own;
-  for (; area != map.read_whole.end() && area->table == point.table && area->range.start() < own.end();
-       ++area)
+  for (; area != map.read_whole.end() && area->table == table && area->range.start() < own.end(); ++area)
     extent = hull(extent, area->range);
   return extent;
 }

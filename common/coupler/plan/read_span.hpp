@@ -34,9 +34,12 @@ struct ReadSpan {
   Cut end{};
 };
 
-/// Returns the addresses that a request for the point has to ask for: its own, and the whole of each area of
+/// Returns the addresses that a request for `own` has to ask for: those, and the whole of each area of
 /// Map::read_whole that has one of them.
-modbus::Range read_extent(const Map& map, const Point& point);
+modbus::Range read_extent(const Map& map, Table table, modbus::Range own);
+inline modbus::Range read_extent(const Map& map, const Point& point) {
+  return read_extent(map, point.table, read_range(point));
+}
 
 /// Returns the range from the first address of either to the last one of either.
 modbus::Range hull(modbus::Range a, modbus::Range b);

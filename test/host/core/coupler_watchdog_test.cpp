@@ -43,6 +43,7 @@ struct CouplerWatchdogTest : test::DeviceTest {
     builder.head().on_reconnect = on_reconnect;
     builder.head().polling.rate = 0.1;
     builder.head().coupler_watchdog = known;
+    builder.head().read_whole = read_whole;
     owned = builder.build();
     make_sink();
     make_engine(Verify::off, nullptr);
@@ -67,6 +68,7 @@ struct CouplerWatchdogTest : test::DeviceTest {
   WatchdogStatus status() const { return engine->statistics().watchdog; }
 
   WatchdogSequences known;
+  Span<const TableRange> read_whole;
 };
 
 TEST_F(CouplerWatchdogTest, It_is_armed_before_anything_else_is_written_and_again_at_each_connect) {
@@ -285,6 +287,28 @@ TEST_F(CouplerWatchdogTest, An_alarm_is_looked_at_as_often_as_it_is_to_be_fed) {
               ElementsAre("read coils 4144+1", "write coil 4144", "read coils 4144+1", "write coil 4"));
   EXPECT_EQ(status().expiries, 1U);
   EXPECT_EQ(valve(), 1);
+}
+
+TEST_F(CouplerWatchdogTest, Where_the_device_gives_an_area_only_whole_it_is_read_whole) {
+  static constexpr Step kept[] = {{Table::holding_registers, 1000, 3, true}};
+  static const TableRange areas[] = {{Table::coils, modbus::Range::of(4140, 8)},
+                                     {Table::holding_registers, modbus::Range::of(998, 4)}};
+  read_whole = areas;
+  known.arm = kept;
+  known.feed = {};
+  known.refusal = {};
+  known.reset = clear;
+  known.alarm = Step{Table::coils, 4144, 1, false};
+  device.values[{Table::holding_registers, 1000}] = 3;
+  start_with_watchdog();
+  EXPECT_THAT(requests_of(milliseconds(10)),
+              ElementsAre("connect", "read coils 4140+8", "read holding_registers 998+4", "read coils 4+1",
+                          "read holding_registers 5+1"));
+  device.values[{Table::coils, 4144}] = 1;
+  EXPECT_THAT(requests_of(milliseconds(100)),
+              ElementsAre("read coils 4140+8", "write coil 4144", "read coils 4140+8",
+                          "read holding_registers 998+4"));
+  EXPECT_EQ(status().expiries, 1U);
 }
 
 TEST_F(CouplerWatchdogTest, A_call_while_it_has_not_expired_changes_nothing) {

@@ -25,11 +25,12 @@ struct WatchdogWrites : ::testing::Test {
     device.requests.clear();
   }
   FakeDevice device;
+  Map map;
   Link link{test::share(device), {}, {}};
 };
 
 TEST_F(WatchdogWrites, Each_is_a_request_by_itself_in_order) {
-  const auto refused = write_steps(steps, link);
+  const auto refused = write_steps(steps, map, link);
   ASSERT_TRUE(refused);
   EXPECT_FALSE(refused->has_value());
   EXPECT_THAT(device.requests, ElementsAre("write register 4104", "write coil 7", "write register 4105"));
@@ -39,7 +40,7 @@ TEST_F(WatchdogWrites, Each_is_a_request_by_itself_in_order) {
 
 TEST_F(WatchdogWrites, The_first_one_refused_ends_them) {
   device.missing.insert({Table::coils, 7});
-  const auto refused = write_steps(steps, link);
+  const auto refused = write_steps(steps, map, link);
   ASSERT_TRUE(refused && *refused);
   EXPECT_EQ((*refused)->step.address, 7);
   EXPECT_EQ((*refused)->code, Exception::illegal_data_address);
@@ -48,22 +49,22 @@ TEST_F(WatchdogWrites, The_first_one_refused_ends_them) {
 
 TEST_F(WatchdogWrites, What_has_its_value_already_is_left_alone) {
   constexpr Step kept[] = {{Table::holding_registers, 0x1120, 500, true}};
-  ASSERT_TRUE(write_steps(kept, link));
-  ASSERT_TRUE(write_steps(kept, link));
+  ASSERT_TRUE(write_steps(kept, map, link));
+  ASSERT_TRUE(write_steps(kept, map, link));
   EXPECT_THAT(device.requests, ElementsAre("read holding_registers 4384+1", "write register 4384",
                                            "read holding_registers 4384+1"));
 }
 
 TEST_F(WatchdogWrites, A_unit_that_is_away_is_an_error) {
   device.next_errors = {ExceptionReply{Exception::gateway_target_failed_to_respond}};
-  EXPECT_FALSE(write_steps(steps, link));
+  EXPECT_FALSE(write_steps(steps, map, link));
   device.next_errors = {ExceptionReply{Exception::gateway_target_failed_to_respond}};
-  EXPECT_FALSE(has_value(steps[0], link));
+  EXPECT_FALSE(has_value(steps[0], map, link));
 }
 
 TEST_F(WatchdogWrites, What_cannot_be_read_has_no_value) {
   device.missing.insert({Table::coils, 7});
-  const auto answer = has_value({Table::coils, 7, 0, false}, link);
+  const auto answer = has_value({Table::coils, 7, 0, false}, map, link);
   ASSERT_TRUE(answer);
   EXPECT_FALSE(*answer);
 }

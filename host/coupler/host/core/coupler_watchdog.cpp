@@ -45,9 +45,9 @@ std::string to_string(const RejectedStep& rejected) {
                      remedy(rejected.code));
 }
 
-Result<std::optional<RejectedStep>> write_steps(Span<const Step> steps, Link& link) {
+Result<std::optional<RejectedStep>> write_steps(Span<const Step> steps, const Map& map, Link& link) {
   for (const Step& step : steps) {
-    const Result<bool> is_so = step.if_different ? has_value(step, link) : Result<bool>(false);
+    const Result<bool> is_so = step.if_different ? has_value(step, map, link) : Result<bool>(false);
     if (!is_so) return tl::make_unexpected(is_so.error());
     if (*is_so) continue;
     if (auto done = write_step(step, link); !done || done->has_value()) return done;
@@ -55,10 +55,10 @@ Result<std::optional<RejectedStep>> write_steps(Span<const Step> steps, Link& li
   return std::nullopt;
 }
 
-Result<bool> has_value(const Step& place, Link& link) {
+Result<bool> has_value(const Step& place, const Map& map, Link& link) {
   const auto range = modbus::Range::of(place.address, 1);
   std::uint16_t value = 0;
-  const Result<> read = link.read(place.table, range, &value);
+  const Result<> read = link.read_as_mapped(map, place.table, range, &value);
   if (read) return value == place.value;
   if (exception_in(read.error()) == nullptr || is_unit_away(read.error()))
     return tl::make_unexpected(read.error());
@@ -156,7 +156,7 @@ Result<> CouplerWatchdog::feed() {
 
 Result<bool> CouplerWatchdog::is_expired() {
   link_.forget_exceptions();
-  if (known_.alarm) return has_value(*known_.alarm, link_);
+  if (known_.alarm) return has_value(*known_.alarm, map_, link_);
   if (!known_.refusal) return false;
   if (const auto asked = link_.keep_alive(map_); !asked) return tl::make_unexpected(asked.error());
   const bool rejected = link_.has_seen(*known_.refusal);
@@ -165,7 +165,7 @@ Result<bool> CouplerWatchdog::is_expired() {
 }
 
 Result<bool> CouplerWatchdog::carry_out(Span<const WatchdogSequences::Write> steps) {
-  const auto rejected = write_steps(steps, link_);
+  const auto rejected = write_steps(steps, map_, link_);
   if (!rejected) return tl::make_unexpected(rejected.error());
   if (!rejected->has_value()) return true;
   link_.forget_exceptions();

@@ -27,10 +27,11 @@ struct RejectedStep {
 std::string to_string(const RejectedStep& rejected);
 
 /// Sends the writes (FC 5 or 6) in order, up to the first one that is rejected.
-Result<std::optional<RejectedStep>> write_steps(Span<const WatchdogSequences::Write> steps, Link& link);
+Result<std::optional<RejectedStep>> write_steps(Span<const WatchdogSequences::Write> steps, const Map& map,
+                                                Link& link);
 
 /// Returns whether the place holds the value, and false if it cannot be read.
-Result<bool> has_value(const WatchdogSequences::Write& place, Link& link);
+Result<bool> has_value(const WatchdogSequences::Write& place, const Map& map, Link& link);
 
 /// Uses the coupler's own watchdog as Map::coupler_watchdog says: arms it at each connect, feeds it, notices
 /// that it has expired, resets it and arms it again. Each write is a request of its own.

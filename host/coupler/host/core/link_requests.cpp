@@ -27,6 +27,15 @@ Result<> Link::read(Table table, modbus::Range range, std::uint16_t* values) {
   return result(modbus::take_values(request, *reply, values), request.pdu(), *reply);
 }
 
+Result<> Link::read_as_mapped(const Map& map, Table table, modbus::Range range, std::uint16_t* values) {
+  const modbus::Range extent = plan::read_extent(map, table, range);
+  if (extent == range) return read(table, range, values);
+  std::array<std::uint16_t, modbus::max_read_bits> all{};
+  if (auto answer = read(table, extent, all.data()); !answer) return answer;
+  std::copy_n(&all[range.start() - std::size_t{extent.start()}], range.count(), values);
+  return {};
+}
+
 Result<bool> Link::read_if_mapped(Table table, modbus::Range range, std::uint16_t* values) {
   may_be_refused_ = true;
   const Result<> answer = read(table, range, values);

@@ -7,7 +7,6 @@
 
 #include "coupler/map/functions.hpp"
 #include "coupler/modbus/limits.hpp"
-#include "coupler/plan/read_span.hpp"
 
 namespace coupler::host {
 namespace {
@@ -36,15 +35,8 @@ Result<> write_batch(const WriteBatch& batch, const Map& map, Link& link,
   return {};
 }
 
-/// Reads the values of the point alone, in a request as large as the device wants it.
 Result<> read_point(const Map& map, const Point& point, Link& link, std::uint16_t* values) {
-  const Range own = read_range(point);
-  const Range extent = plan::read_extent(map, point);
-  if (extent.count() == own.count()) return link.read(point.table, own, values);
-  std::array<std::uint16_t, modbus::max_read_bits> all{};
-  if (auto read = link.read(point.table, extent, all.data()); !read) return read;
-  std::copy_n(&all[own.start() - std::size_t{extent.start()}], own.count(), values);
-  return {};
+  return link.read_as_mapped(map, point.table, read_range(point), values);
 }
 
 }  // namespace
