@@ -176,6 +176,20 @@ TEST_F(DeviceTest, Other_points_are_read_on_when_a_range_is_rejected) {
   EXPECT_EQ(device.count("read holding_registers 12+1"), 1U) << "the hole is remembered";
 }
 
+TEST_F(DeviceTest, An_area_that_is_given_only_whole_and_rejected_is_reported_once_with_its_points) {
+  static const TableRange area[] = {{Table::holding_registers, modbus::Range::of(10, 10)}};
+  device.missing.insert({Table::holding_registers, 15});
+  auto builder = MapBuilder().holding("a", 9).holding("b", 10).holding("c", 12).holding("d", 19);
+  builder.head().read_whole = area;
+  start(builder);
+  run_for(milliseconds(350));
+  EXPECT_EQ(sink->values["a"].size(), 4U);
+  EXPECT_EQ(sink->reported("holding_registers 10 to 19 (b, c, d) is not in the device: exception 02"), 1);
+  EXPECT_EQ(sink->reported("is not in the device"), 1);
+  EXPECT_EQ(sink->no_values, (std::map<std::string, int>{{"b", 1}, {"c", 1}, {"d", 1}}));
+  EXPECT_EQ(device.count("read holding_registers 10+10"), 1U);
+}
+
 TEST_F(DeviceTest, An_unmapped_address_that_is_rejected_costs_no_point) {
   device.missing.insert({Table::holding_registers, 12});
   auto builder = MapBuilder().holding("a", 11).holding("b", 13);

@@ -73,6 +73,17 @@ TEST_F(RejectedRangesTest, All_bits_of_a_refused_register_are_given_up_with_one_
   EXPECT_EQ(cycle->due(), Time::max());
 }
 
+TEST_F(RejectedRangesTest, A_program_that_only_looks_asks_for_a_rejected_area_once_in_each_cycle) {
+  static const TableRange area[] = {{holding, modbus::Range::of(0, 10)}};
+  missing = {5};
+  MapBuilder builder = registers({1, 2, 3});
+  builder.head().read_whole = area;
+  plan(builder);
+  cycle->only_look();
+  cycle->start(now);
+  for (int i = 0; i < 3; ++i) EXPECT_THAT(run(), ElementsAre("0+10!"));
+}
+
 TEST_F(RejectedRangesTest, A_device_that_takes_fewer_than_the_map_says_is_asked_for_less) {
   longest = 40;
   plan(MapBuilder().many(holding, 0, 100));

@@ -51,6 +51,16 @@ TEST_F(UnansweredReadsTest, It_costs_its_own_points_only_and_is_tried_less_and_l
   EXPECT_EQ(sink->reported("c can be read again"), 1);
 }
 
+TEST_F(UnansweredReadsTest, All_points_of_an_area_that_is_given_only_whole_are_reported_once) {
+  static const TableRange area[] = {{Table::holding_registers, modbus::Range::of(5, 2)}};
+  auto builder = MapBuilder().holding("a", 0).holding("b", 5).holding("c", 6);
+  builder.head().read_whole = area;
+  start(builder, Verify::off);
+  run_for(seconds(5));
+  EXPECT_EQ(sink->reported("holding_registers 5 to 6 (b, c) cannot be read: no reply"), 1);
+  EXPECT_EQ(sink->reported("cannot be read"), 1);
+}
+
 TEST_F(UnansweredReadsTest, The_first_request_of_all_may_be_the_one) {
   start(MapBuilder().holding("b", 5).holding("c", 6).holding("d", 9), Verify::off);
   run_for(seconds(5));

@@ -162,29 +162,22 @@ PollCycle::Parts PollCycle::parts_of_current() const {
       continue;
     }
     plan::Split parts = split(span, planner_.map());
-    if (parts.pieces.empty()) result.alone.push_back(span);
+    if (parts.pieces.empty()) result.alone.push_back(span.points.front());
     open.insert(open.end(), parts.pieces.rbegin(), parts.pieces.rend());
     result.hole = parts.hole;
   }
   return result;
 }
 
-std::vector<std::uint32_t> PollCycle::Parts::points_alone() const {
-  std::vector<std::uint32_t> points;
-  points.reserve(alone.size());
-  for (const ReadSpan& span : alone) points.push_back(span.points.front());
-  return points;
-}
-
 void PollCycle::replace_current(const Parts& parts, bool keeps_alone) {
   Group& group = groups_[current_];
   const auto part_of = step().part_of;
+  const ReadSpan alone{current().table, current().range, parts.alone};
   remove_current();
   const auto insert = [&](std::size_t at, const ReadSpan& span) {
     group.steps.insert(group.steps.begin() + static_cast<std::ptrdiff_t>(at), {span, std::nullopt, part_of});
   };
-  if (keeps_alone)
-    for (const ReadSpan& span : parts.alone) insert(group.next++, span);
+  if (keeps_alone && !alone.points.empty()) insert(group.next++, alone);
   std::size_t next = group.next;
   for (const ReadSpan& span : parts.pieces) insert(next++, span);
 }
@@ -201,7 +194,7 @@ std::vector<std::uint32_t> PollCycle::part(bool keeps_alone, Time now) {
   if (std::none_of(rejected_ranges_.begin(), rejected_ranges_.end(), is_whole))
     rejected_ranges_.push_back(whole);
   const Parts parts = parts_of_current();
-  std::vector<std::uint32_t> alone = parts.points_alone();
+  std::vector<std::uint32_t> alone = parts.alone;
   if (!keeps_alone) {
     const auto is_known = [this](std::uint32_t point) { return given_up_[point]; };  // by another group
     alone.erase(std::remove_if(alone.begin(), alone.end(), is_known), alone.end());
@@ -222,7 +215,7 @@ std::optional<std::vector<std::uint32_t>> PollCycle::failed(Time now) {
   replace_current(parts, true);
   group.has_parts = true;
   done(now);
-  return parts.points_alone();
+  return parts.alone;
 }
 
 std::vector<std::uint32_t> PollCycle::set_aside(Time now) {

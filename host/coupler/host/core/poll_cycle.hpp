@@ -150,14 +150,12 @@ class PollCycle {
   /// The smaller requests for what current() reads.
   struct Parts {
     std::vector<ReadSpan> pieces{};
-    std::vector<ReadSpan> alone{};  ///< points that no smaller request reads
+    std::vector<std::uint32_t> alone{};  ///< points that no smaller request reads
     std::optional<modbus::Range> hole{};
-
-    std::vector<std::uint32_t> points_alone() const;
   };
   Parts parts_of_current() const;
-  /// Replaces current() with its parts. With `keeps_alone`, the requests in `alone` stay in the cycle and
-  /// count as sent.
+  /// Replaces current() with its parts. With `keeps_alone`, a request for the points in `alone` stays in the
+  /// cycle and counts as sent.
   void replace_current(const Parts& parts, bool keeps_alone);
   std::vector<std::uint32_t> part(bool keeps_alone, Time now);
   bool is_read(std::uint32_t point) const { return wanted_[point] && !given_up_[point]; }

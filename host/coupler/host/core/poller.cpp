@@ -59,20 +59,21 @@ void Poller::request_ended() {
 }
 
 void Poller::set_aside(const Error& error) {
-  const ReadSpan span = cycle_.current();
-  const std::string asked = fmt::format(
-      "FC {}, {}, {} {}{}", static_cast<int>(read_function(span.table)), span.range.start(),
-      span.range.count(), holds_bits(span.table) ? "bit" : "register", span.range.count() == 1 ? "" : "s");
-  for (const std::uint32_t point : cycle_.set_aside(clock_.now())) {
-    const std::string why = fmt::format("{} to the request for it ({})", to_string(error), asked);
-    values_.set_aside({&point, 1}, why);
-    sink_.on_no_values({&point, 1}, clock_.now());
+  ReadSpan left = cycle_.current();
+  left.points = cycle_.set_aside(clock_.now());
+  if (!left.points.empty()) {
+    const std::string why =
+        fmt::format("{} to the request for it (FC {}, {}, {} {}{})", to_string(error),
+                    static_cast<int>(read_function(left.table)), left.range.start(), left.range.count(),
+                    holds_bits(left.table) ? "bit" : "register", left.range.count() == 1 ? "" : "s");
+    values_.set_aside(left.points, why);
+    sink_.on_no_values(left.points, clock_.now());
     tell_late();
     sink_.on_report(
         Level::warning,
         fmt::format("{} cannot be read: {}, though other requests are answered; it is tried again "
                     "in 10 s, and then less and less often",
-                    map_.points[point].name, why));
+                    describe(left), why));
   }
   request_ended();
 }
@@ -168,13 +169,14 @@ bool Poller::ask_in_parts(modbus::Exception code) {
 /// Handles the exception of a request, parts of which may be good.
 void Poller::on_rejection(modbus::Exception code, std::string_view what, std::string_view until) {
   statistics_.rejected();
-  const std::string why = to_string(Error(ExceptionReply{code}));
-  for (const std::uint32_t point : cycle_.rejected(clock_.now())) {
-    values_.rejected({&point, 1}, code);
-    sink_.on_no_values({&point, 1}, clock_.now());
-    tell_late();
-    sink_.on_report(Level::warning, fmt::format("{} {}: {}; {}", map_.points[point].name, what, why, until));
-  }
+  ReadSpan left = cycle_.current();
+  left.points = cycle_.rejected(clock_.now());
+  if (left.points.empty()) return;
+  values_.rejected(left.points, code);
+  sink_.on_no_values(left.points, clock_.now());
+  tell_late();
+  sink_.on_report(Level::warning, fmt::format("{} {}: {}; {}", describe(left), what,
+                                              to_string(Error(ExceptionReply{code})), until));
 }
 
 void Poller::report_rejected_ranges() {
@@ -183,9 +185,17 @@ void Poller::report_rejected_ranges() {
 }
 
 std::string Poller::describe(const ReadSpan& span) const {
-  if (span.points.size() == 1) return std::string(map_.points[span.points.front()].name);
-  return fmt::format("{} {} to {} ({} to {})", to_string(span.table), span.range.start(), span.range.last(),
-                     map_.points[span.points.front()].name, map_.points[span.points.back()].name);
+  constexpr std::size_t most = 8;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(span.points.size(), most); ++i)
+    names += fmt::format("{}{}", i == 0 ? "" : ", ", map_.points[span.points[i]].name);
+  if (span.points.size() == 1) return names;
+  if (span.points.size() > most) names += fmt::format(" and {} more", span.points.size() - most);
+  const bool is_one = span.range.count() == 1;
+  return fmt::format("{} {} ({})", to_string(span.table),
+                     is_one ? std::to_string(span.range.start())
+                            : fmt::format("{} to {}", span.range.start(), span.range.last()),
+                     names);
 }
 
 }  // namespace coupler::host
