@@ -2,6 +2,10 @@
 // Writes at a time to a device that has no timer: the driver's does it.
 #include <gmock/gmock.h>
 
+#include <chrono>
+#include <future>
+#include <thread>
+
 #include "test/host/core/schedule_fixture.hpp"
 
 namespace coupler::host {
@@ -169,6 +173,46 @@ TEST_F(ScheduledWritesTest, An_exception_is_a_failure_with_its_words) {
   const ScheduledOutcome told = outcome();
   EXPECT_EQ(told.result, Became::failed);
   EXPECT_THAT(told.reason, HasSubstr("exception 04"));
+}
+
+TEST_F(ScheduledWritesTest, A_call_withdraws_it_while_it_is_queued) {
+  begin_foreign(press());
+  schedule("lamp", 1, milliseconds(50));
+  const ScheduleAnswer kept = schedule("lamp", 1, milliseconds(50));
+  clock.advance(milliseconds(50));
+  auto answer = engine->cancel_scheduled(1);
+  engine->step();
+  const CallAnswer told = answer.get();
+  EXPECT_TRUE(told.success) << told.text;
+  const ScheduledOutcome became = outcome();
+  EXPECT_EQ(became.number, 1U);
+  EXPECT_EQ(became.result, Became::cancelled);
+  EXPECT_EQ(became.reason, "its client cancelled it");
+  run_for(milliseconds(50));
+  EXPECT_EQ(device.count("write coil 5"), 1U);
+  EXPECT_EQ(outcome().number, kept.number) << "the other one has its outcome, too";
+  auto again = engine->schedule(wanted("lamp", 0, milliseconds(50)));
+  run_for(milliseconds(100));
+  EXPECT_NE(again.get().number, 0U) << "nothing queued before is missing its result";
+}
+
+TEST_F(ScheduledWritesTest, A_call_withdraws_it_while_it_waits_behind_another_unit) {
+  begin_foreign(press());
+  schedule("lamp", 1, milliseconds(50));
+  clock.advance(milliseconds(50));
+  std::future<CallAnswer> answer;
+  during_wait_for_turn([this] { engine->step(); },
+                       [&] {
+                         answer = engine->cancel_scheduled(1);
+                         link->wake();
+                         for (int i = 0; i < 20000 && shared->turns.is_awaited(); ++i)
+                           std::this_thread::sleep_for(std::chrono::microseconds(100));
+                       });
+  EXPECT_TRUE(is_turn_free());
+  run_for(milliseconds(50));
+  EXPECT_TRUE(answer.get().success);
+  EXPECT_EQ(outcome().result, Became::cancelled);
+  EXPECT_EQ(device.count("write coil 5"), 0U);
 }
 
 TEST_F(ScheduledWritesTest, The_limits_are_told_with_what_is_possible) {

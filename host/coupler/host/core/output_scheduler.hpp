@@ -81,6 +81,7 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
                   const std::string& reason) override;
   void on_written(const Write& write) override;
   void on_made_safe(const std::vector<Write>& values) override;
+  bool withdraws() const override { return cancels_.any(); }
 
   /// A node can be given a time once its clock is known, which is soon: it answers the first wait for changes
   /// at once.

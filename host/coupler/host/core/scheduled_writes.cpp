@@ -19,9 +19,9 @@ void ScheduledWrites::add(const AcceptedWrite& what) {
   find_due();
 }
 
-bool ScheduledWrites::has(std::uint32_t number) const {
-  return std::any_of(entries_.begin(), entries_.end(),
-                     [number](const Entry& entry) { return entry.what.number == number; });
+std::list<ScheduledWrites::Entry>::const_iterator ScheduledWrites::find(std::uint32_t number) const {
+  return std::find_if(entries_.begin(), entries_.end(),
+                      [number](const Entry& entry) { return entry.what.number == number; });
 }
 
 Time ScheduledWrites::due(const Entry& entry) {
@@ -117,9 +117,11 @@ void ScheduledWrites::cancel(const std::string& reason) {
 }
 
 bool ScheduledWrites::cancel(std::uint32_t number, const std::string& reason) {
-  const std::size_t before = entries_.size();
-  cancel_if([number](const Entry& entry) { return entry.what.number == number; }, {clock_.now(), {}}, reason);
-  return entries_.size() < before;
+  const auto entry = find(number);
+  if (entry == entries_.end()) return false;
+  if (entry->state == Entry::State::being_written && !writer_.withdraw(*entry)) return false;
+  finish(*entry, Kind::cancelled, {clock_.now(), {}}, reason);
+  return true;
 }
 
 }  // namespace coupler::host

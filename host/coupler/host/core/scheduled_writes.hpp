@@ -26,7 +26,7 @@ class ScheduledWrites {
 
   void add(const AcceptedWrite& what);
   /// Returns whether the one with that number waits or is being written.
-  bool has(std::uint32_t number) const;
+  bool has(std::uint32_t number) const { return find(number) != entries_.end(); }
   /// The number of those that wait or are being written.
   std::size_t size() const { return entries_.size(); }
 
@@ -41,7 +41,7 @@ class ScheduledWrites {
 
   /// Cancels those that wait.
   void cancel(const std::string& reason);
-  /// Cancels the one with that number. Returns false if it does not wait.
+  /// Cancels the one with that number. Returns false if there is none, or if it has been sent.
   bool cancel(std::uint32_t number, const std::string& reason);
 
  private:
@@ -55,6 +55,7 @@ class ScheduledWrites {
     State state = State::waiting;
   };
 
+  std::list<Entry>::const_iterator find(std::uint32_t number) const;
   static std::uint32_t point(const Entry& entry) { return entry.what.what.write.point; }
   static Time due(const Entry& entry);
   void find_due();

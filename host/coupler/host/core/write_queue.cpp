@@ -93,21 +93,25 @@ std::optional<Write> WriteQueue::take() {
   return remove(first());
 }
 
-std::optional<Write> WriteQueue::take_one_of(const std::vector<bool>& points) {
+template <class Which>
+std::optional<Write> WriteQueue::take_if(Which which) {
   const std::lock_guard lock(mutex_);
   for (Index place = first(); place != none; place = next(place))
-    if (points[places_[place].write.point]) return remove(place);
+    if (which(places_[place].write)) return remove(place);
   return std::nullopt;
+}
+
+std::optional<Write> WriteQueue::take_one_of(const std::vector<bool>& points) {
+  return take_if([&points](const Write& write) { return points[write.point]; });
 }
 
 std::optional<Write> WriteQueue::take_late(Time now) {
   if (!any_may_be_late_.load(std::memory_order_relaxed)) return std::nullopt;
-  const std::lock_guard lock(mutex_);
-  for (Index place = first(); place != none; place = next(place)) {
-    const Write& write = places_[place].write;
-    if (write.until < now) return remove(place);
-  }
-  return std::nullopt;
+  return take_if([now](const Write& write) { return write.until < now; });
+}
+
+std::optional<Write> WriteQueue::take_of(const WriteListener& listener) {
+  return take_if([&listener](const Write& write) { return write.listener == &listener; });
 }
 
 void WriteQueue::put_back(const std::vector<Write>& writes) {

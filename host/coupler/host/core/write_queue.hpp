@@ -46,6 +46,8 @@ class WriteQueue {
   std::optional<Write> take_one_of(const std::vector<bool>& points);
   /// Takes the first write that has waited longer than it may.
   std::optional<Write> take_late(Time now);
+  /// Takes the write whose result the listener would receive.
+  std::optional<Write> take_of(const WriteListener& listener);
   /// Puts writes that were taken but not sent back to the front of their class, in their order.
   void put_back(const std::vector<Write>& writes);
   bool empty() const { return size_now_.load(std::memory_order_relaxed) == 0; }
@@ -87,6 +89,9 @@ class WriteQueue {
     std::uint64_t last_ordered = 0;  ///< Place::number of the newest one
   };
 
+  /// Takes the first write for which `which(write)` is true.
+  template <class Which>
+  std::optional<Write> take_if(Which which);
   void settle(Waiting& waiting);
   bool is_ordered(const Write& write) const;
   bool joins(const Write& newer, const Write& older) const;

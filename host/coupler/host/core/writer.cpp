@@ -72,6 +72,12 @@ std::future<CallAnswer> Writer::ask_safe() {
   return answer;
 }
 
+bool Writer::withdraw(const WriteListener& listener) {
+  const auto write = queue_.take_of(listener);
+  if (write) queue_.settled(write->point);
+  return write.has_value();
+}
+
 bool Writer::send_now() {
   if (send_error_ || !batch_.empty() || !link_.is_ready()) return false;
   drop_late();
@@ -118,12 +124,12 @@ Result<> Writer::step() {
     return {};
   }
   // First, since what goes before all others, or replaces them, may come meanwhile.
-  link_.await_turn_to_write([this] { return is_safe_asked(); });
+  link_.await_turn_to_write([this] { return is_safe_asked() || withdraws(); });
   if (is_safe_asked()) return make_safe();
   fire_deadmen();
   drop_late();
-  queue_.take(batch_, merges_);
-  if (batch_.empty()) {  // they were too late
+  if (!withdraws()) queue_.take(batch_, merges_);
+  if (batch_.empty()) {  // they were too late, or are being withdrawn
     link_.give_back();
     return {};
   }

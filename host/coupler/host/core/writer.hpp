@@ -20,13 +20,15 @@
 
 namespace coupler::host {
 
-/// Gets the writes that were carried out, in the connection's thread.
+/// Gets the writes that were carried out, in the connection's thread, and may withdraw writes of its own.
 class WrittenListener {
  public:
   /// The point has been written by a write of its own.
   virtual void on_written(const Write& write) = 0;
   /// These outputs have been set to their safe values.
   virtual void on_made_safe(const std::vector<Write>& values) = 0;
+  /// Returns whether no write may be sent before it has called Writer::withdraw().
+  virtual bool withdraws() const = 0;
 
  protected:
   ~WrittenListener() = default;
@@ -52,6 +54,9 @@ class Writer {
   /// Writes the safe values, whatever `on_shutdown` says, after the request in flight and before all that is
   /// queued. Queued writes to these points are superseded.
   std::future<CallAnswer> ask_safe();
+  /// Takes back a write that is still queued. Then its listener receives no result. Returns false if the
+  /// write was sent, or has its result.
+  bool withdraw(const WriteListener& listener);
   /// Logs the lines about writes that were held back because there were too many. Call it now and then.
   void report_held_back();
   bool is_safe_asked() const { return safe_calls_.any(); }
@@ -130,6 +135,7 @@ class Writer {
   void report(const Write& write, const WriteResult& result);
   void drop(const Write& write);
   void drop_late();
+  bool withdraws() const { return written_ != nullptr && written_->withdraws(); }
   bool restores(const Write& write) const {
     return map_.on_reconnect == OnReconnect::restore && !is_pulsed(map_.points[write.point]);
   }
