@@ -80,6 +80,26 @@ TEST_F(SafeValuesTest, They_go_before_what_waits_for_its_units_turn) {
   EXPECT_EQ(engine->statistics().written(Outcome::superseded), 1U);
 }
 
+TEST_F(SafeValuesTest, A_call_that_comes_meanwhile_supersedes_what_was_queued_before_it) {
+  start_online();
+  std::future<CallAnswer> second;
+  device.refuses = [&](const std::string& request) {
+    if (request == "write register 0" && !second.valid()) {
+      push("lamp", 1);
+      second = engine->make_safe();
+    }
+    return std::optional<modbus::Exception>();
+  };
+  auto first = engine->make_safe();
+  engine->step();
+  EXPECT_TRUE(is_ready(first));
+  run_for(milliseconds(50));
+  ASSERT_TRUE(is_ready(second));
+  EXPECT_TRUE(second.get().success);
+  EXPECT_EQ((device.values[{Table::coils, 0}]), 0);
+  EXPECT_EQ(engine->statistics().written(Outcome::superseded), 1U);
+}
+
 TEST_F(SafeValuesTest, Without_any_no_turn_is_kept) {
   fakes::MapBuilder builder;
   builder.add(Table::coils, "hold", 2, Type::BOOL, [](Point& point) { point.safe = Safe::hold; });

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <deque>
 #include <future>
 #include <mutex>
@@ -56,10 +57,15 @@ class CallQueue {
     any_ = !waiting_.empty();
     return call;
   }
-  /// Answers all calls that wait.
-  void answer(const Answer& answer) {
+  /// Returns how many calls wait.
+  std::size_t size() {
     const std::lock_guard lock(mutex_);
-    answer_all(answer);
+    return waiting_.size();
+  }
+  /// Answers the `count` oldest calls. Those that came while these were carried out still wait.
+  void answer(std::size_t count, const Answer& answer) {
+    const std::lock_guard lock(mutex_);
+    answer_oldest(count, answer);
   }
 
   /// Allows calls, because there is a connection.
@@ -71,7 +77,7 @@ class CallQueue {
   void close(const std::string& why) {
     const std::lock_guard lock(mutex_);
     closed_ = why;
-    answer_all({{}, why});
+    answer_oldest(waiting_.size(), {{}, why});
   }
 
  private:
@@ -79,10 +85,12 @@ class CallQueue {
   typename std::deque<Call>::iterator find(Which which) {
     return std::find_if(waiting_.begin(), waiting_.end(), [&](const Call& call) { return which(call.what); });
   }
-  void answer_all(const Answer& answer) {
-    for (Call& call : waiting_) call.answer.set_value(answer);
-    waiting_.clear();
-    any_ = false;
+  void answer_oldest(std::size_t count, const Answer& answer) {
+    for (; count > 0; --count) {
+      waiting_.front().answer.set_value(answer);
+      waiting_.pop_front();
+    }
+    any_ = !waiting_.empty();
   }
 
   std::mutex mutex_;

@@ -100,12 +100,13 @@ Time CouplerWatchdog::due() const {
 
 Result<bool> CouplerWatchdog::step() {
   if (!resets_.any()) return serve(known_.recovery == Watchdog::Recovery::automatic);
+  const std::size_t asked = resets_.size();
   auto is_back = bring_up(true);
   if (!is_back) return is_back;  // disconnected() tells them
   const bool success = status_.state == State::fed;
-  resets_.answer({success, !success   ? status_.error_text
-                           : *is_back ? "reset, and fed again"
-                                      : "it had not expired"});
+  resets_.answer(asked, {success, !success   ? status_.error_text
+                                  : *is_back ? "reset, and fed again"
+                                             : "it had not expired"});
   return is_back;
 }
 

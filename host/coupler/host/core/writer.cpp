@@ -246,6 +246,7 @@ Result<> Writer::verify(const Write& write, const Result<>& connection) {
 }
 
 Result<> Writer::make_safe() {
+  const std::size_t asked = safe_calls_.size();
   std::vector<std::uint32_t> deadmen;  // their values waited
   while (const auto write = queue_.take_one_of(is_safe_point_)) {
     if (write->of_deadman) deadmen.push_back(write->point);
@@ -255,8 +256,8 @@ Result<> Writer::make_safe() {
   if (!rejected) {
     for (const std::uint32_t point : deadmen)
       if (last_written_.count(point) == 0) deadmen_.retry(point, Time());  // nothing is restored
-    safe_calls_.answer(
-        {false, fmt::format("not all outputs have their safe values: {}", to_string(rejected.error()))});
+    safe_calls_.answer(asked, {false, fmt::format("not all outputs have their safe values: {}",
+                                                  to_string(rejected.error()))});
     return tl::make_unexpected(rejected.error());
   }
   std::string text = fmt::format("{} of {} outputs have their safe values",
@@ -268,7 +269,7 @@ Result<> Writer::make_safe() {
   }
   sink_.on_report(rejected->empty() ? Level::info : Level::error, text);
   if (written_ != nullptr) written_->on_made_safe(safe_values_);  // before a caller who asks for more
-  safe_calls_.answer({rejected->empty(), text});
+  safe_calls_.answer(asked, {rejected->empty(), text});
   return {};
 }
 
