@@ -16,7 +16,7 @@ set +u
 set -u
 plant_chip
 plant_node plant.yaml
-readonly not_begun='the node read a new map, lost or found a chip, or ended'
+readonly not_begun='the device read a new map, lost or found a chip, or ended'
 
 # roscore gives its master 10 s to start, which this kernel may need on a busy machine.
 start core ../support/ros-master 11311
@@ -56,7 +56,7 @@ echo "# an output at a time: driven, or told why not"
 sim_pull plant 0 down
 schedule() {
   start "$1" python3 schedule_in_ros.py "$2"
-  check "it is accepted" wait_until says "$1" 'accepted: the node does it'
+  check "it is accepted" wait_until says "$1" 'accepted: the device does it'
   due=$((SECONDS + $(sed -nE 's/.*, in ([0-9]+) s$/\1/p' "$(log "$1")")))
 }
 not_driven() {

@@ -10,7 +10,7 @@ from coupler_driver.msg import Scheduled
 from coupler_driver.srv import Schedule, Write
 
 RESULTS = {Scheduled.DONE: "done", Scheduled.CANCELLED: "cancelled", Scheduled.FAILED: "failed", Scheduled.UNKNOWN: "unknown"}
-BY_NODE = "accepted: the node does it"
+BY_NODE = "accepted: the device does it"
 NEVER = 3000  # seconds
 
 

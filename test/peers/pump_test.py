@@ -67,7 +67,7 @@ def firmware_and_client(firmware, client, checks):
     for line in ("set the speed to 7000 %: refused: 7000 % is out of range; send 0 to 6553.5 %",
                  "set the speed to 5 %: exception 04 (server device failure)", "start: ok", "the motor turns",
                  "close the valve: exception 04 (server device failure)", "4.80 bar after 1 starts",
-                 "stop in 5 s: accepted: the node does it", "it has stopped"):
+                 "stop in 5 s: accepted: the device does it", "it has stopped"):
         checks.equal(f"the client says '{line}'", line in said, True)
 
 

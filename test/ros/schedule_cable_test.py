@@ -36,7 +36,7 @@ class Cable(testing.RosTest):
         self.topic("/cable/lamp", Bool).next()
         due = time.time() + DUE
         answer = self.service("/cable/schedule", Schedule)("lamp", "true", ros_time(due), ros_duration(0))
-        self.assertEqual((answer.success, answer.message), (True, "accepted: the node does it"))
+        self.assertEqual((answer.success, answer.message), (True, "accepted: the device does it"))
         network.pull()
         while time.time() < due + 1:
             beside.sendall(struct.pack(">HHHBBHH", 1, 0, 6, 1, 1, 4, 1))

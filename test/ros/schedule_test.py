@@ -28,7 +28,7 @@ mapping:
     part: {{address: 9, type: BOOL, bit: 3}}
 """
 SOON, LATER, NEVER = 0.3, 0.6, 3000  # seconds
-BY_DRIVER, BY_NODE = "accepted: the driver does it", "accepted: the node does it"
+BY_DRIVER, BY_NODE = "accepted: the driver does it", "accepted: the device does it"
 
 
 class ScheduleTest(testing.RosTest):
@@ -260,7 +260,7 @@ class ByTheNode(ScheduleTest):
         self.begin()
         number = self.accepted(BY_NODE, "lamp", "true", NEVER)
         self.node.reload()
-        self.cancelled(number, "the node read a new map, lost or found a chip, or ended")
+        self.cancelled(number, "the device read a new map, lost or found a chip, or ended")
         self.settles(BY_NODE)
         self.done(self.accepted(BY_NODE, "lamp", "true"))
 
@@ -271,8 +271,8 @@ class ByTheNode(ScheduleTest):
         self.node.end()
         outcome = self.outcome(number)
         self.assertIn((outcome.result, outcome.reason),
-                      ((Scheduled.CANCELLED, "the node read a new map, lost or found a chip, or ended"),
-                       (Scheduled.UNKNOWN, "the connection ended before the outcome was heard")))
+                      ((Scheduled.CANCELLED, "the device read a new map, lost or found a chip, or ended"),
+                       (Scheduled.UNKNOWN, "the connection ended before the outcome was reported")))
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ class Eject(Node):
         self.output = self.declare_parameter("output", "ejector").value
         self.declare_parameter("delay", 0.15)
         self.declare_parameter("duration", 0.05)
-        self.declare_parameter("second_write", False)  # for a coupler that cannot end the duration by itself
+        self.declare_parameter("second_write", False)  # for a device that cannot end the duration by itself
         self.last = None  # the sample before; None: not known
         self.client = self.create_client(Schedule, f"{device}/schedule")
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)

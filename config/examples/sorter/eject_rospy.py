@@ -20,7 +20,7 @@ class Eject:
         self.output = rospy.get_param("~output", "ejector")
         self.delay = rospy.Duration(rospy.get_param("~delay", 0.15))
         self.duration = rospy.Duration(rospy.get_param("~duration", 0.05))
-        self.second_write = rospy.get_param("~second_write", False)  # for a coupler that cannot end the duration by itself
+        self.second_write = rospy.get_param("~second_write", False)  # for a device that cannot end the duration by itself
         self.last = None  # the sample before; None: not known
         self.call = rospy.ServiceProxy(f"{device}/schedule", Schedule)
         # rospy calls back in a thread for each topic; they only hand over. One thread does the work, and may wait for an answer.

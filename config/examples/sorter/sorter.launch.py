@@ -23,7 +23,7 @@ ARGUMENTS = (
     ("output", "ejector", "the point that is switched on"),
     ("delay", "0.15", "seconds from the edge until the output is switched on"),
     ("duration", "0.05", "seconds for which it stays on"),
-    ("second_write", "false", "true: the coupler cannot end the duration by itself, a second write does"),
+    ("second_write", "false", "true: the device cannot end the duration by itself, a second write does"),
     ("namespace", "", "of both nodes, within that of the file that includes this one"),
 )
 

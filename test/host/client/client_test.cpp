@@ -135,7 +135,8 @@ TEST_F(PumpClient, What_cannot_be_scheduled_says_why) {
   pump.connect();
   ASSERT_TRUE(pump.wait_online(soon));
   EXPECT_THAT(pump.speed.schedule(7000, later).text(), HasSubstr("0 to 6553.5 %"));
-  EXPECT_THAT(pump.valve.schedule(true, later, 1s).text(), HasSubstr("only a node ends an output by itself"));
+  EXPECT_THAT(pump.valve.schedule(true, later, 1s).text(),
+              HasSubstr("only a coupler-node ends an output by itself"));
   EXPECT_THAT(pump.valve.schedule(true, later + 2h).text(), HasSubstr("an hour (3600 s) is the most"));
 }
 

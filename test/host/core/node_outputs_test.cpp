@@ -23,7 +23,7 @@ TEST_F(NodeOutputsTest, The_node_gets_the_time_on_its_clock_the_value_and_the_du
   const Time due = clock.now() + seconds(3);
   const ScheduleAnswer answer = schedule("speed", 0x1234, seconds(3), milliseconds(70));
   EXPECT_EQ(answer.number, 1U);
-  EXPECT_EQ(answer.text, "accepted: the node does it");
+  EXPECT_EQ(answer.text, "accepted: the device does it");
   ASSERT_EQ(device.scheduled.size(), 1U);
   const modbus::ScheduleOutput& got = device.scheduled[0];
   EXPECT_EQ(got.epoch, device.epoch);
@@ -43,7 +43,7 @@ TEST_F(NodeOutputsTest, A_call_right_after_the_connect_is_for_the_node_too) {
   engine->step();
   auto asked = engine->schedule(wanted("speed", 7, seconds(3), milliseconds(70)));
   run_for(milliseconds(10));
-  EXPECT_EQ(asked.get().text, "accepted: the node does it");
+  EXPECT_EQ(asked.get().text, "accepted: the device does it");
 }
 
 TEST_F(NodeOutputsTest, What_the_node_tells_is_the_outcome) {
@@ -132,7 +132,7 @@ TEST_F(NodeOutputsTest, With_the_connection_the_outcome_is_lost) {
   run_for(seconds(2));
   const ScheduledOutcome told = outcome();
   EXPECT_EQ(told.result, Became::unknown);
-  EXPECT_THAT(told.reason, HasSubstr("the connection ended before the outcome was heard"));
+  EXPECT_THAT(told.reason, HasSubstr("the connection ended before the outcome was reported"));
 }
 
 TEST_F(NodeOutputsTest, An_outcome_among_changes_that_were_lost_is_unknown) {
@@ -184,7 +184,7 @@ TEST_F(NodeOutputsTest, A_node_that_was_started_anew_has_cancelled_what_was_not_
   run_for(seconds(3));
   ASSERT_EQ(sink->outcomes.size(), 2U);
   EXPECT_EQ(sink->outcomes[0].result, Became::cancelled);
-  EXPECT_EQ(sink->outcomes[0].reason, "the node read a new map, lost or found a chip, or ended");
+  EXPECT_EQ(sink->outcomes[0].reason, "the device read a new map, lost or found a chip, or ended");
   EXPECT_EQ(sink->outcomes[1].result, Became::unknown);
 }
 

@@ -33,7 +33,7 @@ void check_serial(const Reader& top, const Connection& connection, const Context
     if (top.has(other))
       context.problems.error(
           top.find(other)->key_at, fmt::format("the map has both '{}' and 'serial'", other),
-          fmt::format("remove '{}' if the coupler is on a serial line, else 'serial'", other));
+          fmt::format("remove '{}' if the device is on a serial line, else 'serial'", other));
 }
 
 void check_tls(const Reader& top, Connection& connection, const Context& context) {
@@ -54,11 +54,11 @@ void check_tls(const Reader& top, Connection& connection, const Context& context
   if (reader->has("pin") == reader->has("ca"))
     context.problems.error(
         at, reader->has("pin") ? "'tls' has both 'ca' and 'pin'" : "'tls' has neither 'ca' nor 'pin'",
-        "give the coupler's authority, or the pin that 'coupler pin HOST' shows");
+        "give the device's authority, or the pin that 'coupler pin HOST' shows");
   if (reader->has("pin") && !is_pin(connection.tls.pin))
     context.problems.error(reader->find("pin")->at, fmt::format("'pin': '{}' is no pin", connection.tls.pin),
                            "write 'sha256:' and 64 hexadecimal digits, as 'coupler pin HOST' shows them");
-  if (connection.is_rtu()) context.problems.error(at, "a coupler that speaks RTU has no TLS", "remove 'tls'");
+  if (connection.is_rtu()) context.problems.error(at, "a device that speaks RTU has no TLS", "remove 'tls'");
   if (!top.has("port")) connection.port = default_tls_port;
 }
 
@@ -67,7 +67,7 @@ void check_unit(const Reader& top, const Connection& connection, const Context& 
   if (!connection.is_rtu() || connection.is_broadcast() || is_rtu_unit(connection.unit)) return;
   context.problems.error(top.find("unit")->at,
                          fmt::format("'unit': {} is reserved on a serial line", connection.unit),
-                         "write the coupler's own, 1 to 247");
+                         "write the device's own, 1 to 247");
 }
 
 }  // namespace

@@ -263,7 +263,7 @@ Entry build_tree(const std::string& text, bool json, Anchors* anchors) {
   try {
     YAML::Parser parser(in);
     if (!parser.HandleNextDocument(builder))
-      throw SyntaxError{{1, 1}, "the file is empty", "describe a coupler in it"};
+      throw SyntaxError{{1, 1}, "the file is empty", "describe a device in it"};
     while (parser.HandleNextDocument(builder)) {
     }
   } catch (const YAML::Exception& e) {

@@ -69,7 +69,7 @@ constexpr double most_double = std::numeric_limits<double>::max();
 constexpr Key keys[] = {
     // The map: the keys of ros-modbus-device-driver.
     inherited("name", S::map, K::ros_name, "press", "namespace of the topics").needed(),
-    inherited("address", S::map, K::host, "192.168.0.10", "host name or IP address of the coupler"),
+    inherited("address", S::map, K::host, "192.168.0.10", "host name or IP address of the device"),
     inherited("port", S::map, K::integer, "502", "TCP port").otherwise("502").within(1, 65535),
     inherited("unit", S::map, K::integer, "1", "unit id").otherwise("1").within(0, 255),
     inherited("timeout", S::map, K::seconds, "3", "longest wait for a reply")
@@ -105,10 +105,10 @@ constexpr Key keys[] = {
         .otherwise("tcp")
         .one_of<Framing>(),
     project("serial", S::map, K::section, "{device: /dev/ttyUSB0}",
-            "the serial port of the coupler, instead of an address")
+            "the serial port to the device, instead of an address")
         .holds(S::serial),
     project("tls", S::map, K::section, "{certificate: cell1.pem, key: cell1.key, ca: authority.pem}",
-            "how this machine proves itself to the coupler, and the coupler to it")
+            "how this machine proves itself to the device, and the device to it")
         .holds(S::tls),
     project("preset", S::map, K::preset, "wago_750", "a kind of coupler, and what is true of all of them"),
     project("limits", S::map, K::section, "{read_registers: 64}", "what the device takes in one request")
@@ -353,10 +353,10 @@ constexpr Key keys[] = {
     // `tls:`
     project("certificate", S::tls, K::text, "cell1.pem", "the file of this machine's certificate").needed(),
     project("key", S::tls, K::text, "cell1.key", "the file of its key").needed(),
-    project("ca", S::tls, K::text, "authority.pem", "the file of the coupler's authority"),
-    project("name", S::tls, K::text, "press", "the name in the coupler's certificate, if not its address"),
+    project("ca", S::tls, K::text, "authority.pem", "the file of the device's authority"),
+    project("name", S::tls, K::text, "press", "the name in the device's certificate, if not its address"),
     project("pin", S::tls, K::text, "\"sha256:0d0e…\"",
-            "of the coupler's certificate, in place of `ca` and `name`"),
+            "of the device's certificate, in place of `ca` and `name`"),
     // `serial:`
     project("device", S::serial, K::text, "/dev/ttyUSB0", "the port's device file").needed(),
     project("baud", S::serial, K::integer, "9600", "bits a second").otherwise("19200").within(50, 4000000),

@@ -231,15 +231,15 @@ void check_broadcast(const Reader& top, const DraftPoints& points, const Map& he
   if (!head.connection.is_broadcast()) return;
   if (head.coupler_watchdog.present())
     context.problems.error(top.find("watchdog")->key_at,
-                           "the coupler's 'watchdog' needs answers, but 'unit: 0' is a broadcast",
-                           "remove 'watchdog', or give the map the coupler's own unit, 1 to 247");
+                           "the device's 'watchdog' needs answers, but 'unit: 0' is a broadcast",
+                           "remove 'watchdog', or give the map the device's own unit, 1 to 247");
   for (const DraftPoint& draft : points)
     if (needs_answers(draft.point, head.limits))
       context.problems.error(
           draft.name_at,
           fmt::format("{} needs to be read, but 'unit: 0' is a broadcast, which nobody answers",
                       shown(draft.point.name)),
-          is_readable(draft.point) ? "give it 'access: write', or the map the coupler's own unit, 1 to 247"
+          is_readable(draft.point) ? "give it 'access: write', or the map the device's own unit, 1 to 247"
                                    : for_itself);
 }
 

@@ -87,7 +87,7 @@ tl::expected<void, std::string> LineRequests::request(const std::vector<LineSpec
     lines_.add(wired_outputs(*std::move(group), lines, readback));
     return {};
   }
-  if (!lines.front().watched) return request_sampled(lines, "more inputs are watched already than can be");
+  if (!lines.front().watched) return request_sampled(lines, "too many inputs are watched already");
   auto group = backend::request_inputs(lines);
   if (!group) return request_apart(lines, group.error());
   lines_.add(wired_inputs(*std::move(group), lines));

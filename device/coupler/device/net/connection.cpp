@@ -161,9 +161,9 @@ void Connection::tell_of_tls() {
   const modbus::Bytes said = framer_.rest();
   constexpr std::uint8_t handshake = 0x16;  // RFC 8446, 5.1: type, then a version 3.x
   if (said.size() > 2 && said[0] == handshake && said[1] == 3)
-    log_.warn_limited(
-        "TLS",
-        "a client speaks TLS at the port without it; TLS has the port that 'security' says, usually 802");
+    log_.warn_limited("TLS", fmt::format("{} speaks TLS at the port without it; TLS has the port that "
+                                         "'security' says, usually 802",
+                                         who()));
 }
 
 /// Answers whole frames while there is room for the longest reply; tells what comes next.

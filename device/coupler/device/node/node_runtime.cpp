@@ -50,8 +50,10 @@ tl::expected<void, ServeError> NodeRuntime::start(const Map& map, Descriptor set
     tls_->commit(context_->tls_listener->socket.get());
   }
   if (context_->analogue && !context_->analogue->drive_all(false))
-    return tl::unexpected(ServeError{ServeError::device_failed,
-                                     "not every analogue output can be driven to its initial value"});
+    return tl::unexpected(
+        ServeError{ServeError::device_failed,
+                   "not every analogue output can be driven to its initial value; the line before names "
+                   "it, or a DAC does not take the value of 'initial' at its point"});
   context_->wiring = std::exchange(context_->prepared, nullptr)->take_over();
   manager_.set_status(status_line());
   return {};

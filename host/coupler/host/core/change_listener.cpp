@@ -91,8 +91,8 @@ void ChangeListener::on_wait_answer(const WaitAnswer& answer) {
   }
   active_ = false;
   sink_.on_note(Level::warning,
-                fmt::format("the node says that it tells changes, but answers with {}; its points are polled "
-                            "while this connection lasts",
+                fmt::format("the device says that it reports changes, but answers the question for them with "
+                            "{}; its points are polled while this connection lasts",
                             to_string(answer.reply.error())));
   changes_.on_end();
 }
@@ -122,7 +122,7 @@ void ChangeListener::begin_epoch(const modbus::ChangesReply& reply) {
   pause(longest);
   asks_for_watchdog_ = true;
   longest_wait_ = std::min(longest_wait_, shortest);
-  say(epochs_, Level::info, "the node counts its changes anew; everything is read once");
+  say(epochs_, Level::info, "the device counts its changes anew; every point is read once");
   changes_.on_new_epoch();
   changes_.on_gap();
 }
@@ -152,8 +152,8 @@ void ChangeListener::map_clock(const modbus::ChangesReply& reply, const WaitAnsw
   if (outcome == ClockMapping::Outcome::taken) return;
   say(jumps_, Level::warning,
       outcome == ClockMapping::Outcome::jumped
-          ? "the node's clock has jumped, or this one: time stamps begin anew"
-          : "the node's clock makes no sense: its time stamps are not used");
+          ? "the device's clock or this machine's has jumped: time stamps begin anew"
+          : "the times that the device reports make no sense: they are not used as time stamps");
 }
 
 void ChangeListener::say(LogLineLimit& lines, Level level, const std::string& text) {

@@ -15,7 +15,7 @@ std::string_view remedy(modbus::Exception code) {
   switch (code) {
     case modbus::Exception::server_device_busy: return "another client owns its outputs; end that client";
     case modbus::Exception::illegal_function:
-    case modbus::Exception::illegal_data_address: return "check that 'preset' is right for this coupler";
+    case modbus::Exception::illegal_data_address: return "check that 'preset' is right for this device";
     default:
       return "check that no other client keeps it running; docs/couplers.md says what each coupler needs";
   }
@@ -134,7 +134,7 @@ Result<bool> CouplerWatchdog::bring_up(bool may_reset) {
     if (!still) return still;
     if (*still) {
       report_failure(State::expired,
-                     "the coupler's watchdog was reset, but writes to outputs are still refused: look for a "
+                     "the device's watchdog was reset, but writes to outputs are still refused: look for a "
                      "fault of its bus "
                      "or its modules");
       return false;
@@ -151,7 +151,7 @@ Result<> CouplerWatchdog::feed() {
   const auto rejected = write_step(known_.feed[turn_++ % known_.feed.size()], link_);
   if (!rejected) return tl::make_unexpected(rejected.error());
   if (rejected->has_value() && (*rejected)->code != known_.refusal)
-    report_failure(State::not_fed, "the coupler's watchdog cannot be fed: " + to_string(**rejected));
+    report_failure(State::not_fed, "the device's watchdog cannot be fed: " + to_string(**rejected));
   return {};
 }
 
@@ -171,7 +171,7 @@ Result<bool> CouplerWatchdog::carry_out(Span<const WatchdogSequences::Write> ste
   if (!rejected->has_value()) return true;
   link_.forget_exceptions();
   report_failure(status_.state == State::expired ? State::expired : State::not_fed,
-                 "the coupler's watchdog cannot be armed: " + to_string(**rejected));
+                 "the device's watchdog cannot be armed: " + to_string(**rejected));
   return false;
 }
 
@@ -183,7 +183,7 @@ void CouplerWatchdog::expired() {
   report_failure(
       State::expired,
       fmt::format(
-          "the coupler's watchdog has expired: {} ms without a request from the driver; its outputs are "
+          "the device's watchdog has expired: {} ms without a request from the driver; its outputs are "
           "off. {}",
           known_.timeout.count(),
           automatic ? "It is being reset"
@@ -207,11 +207,11 @@ void CouplerWatchdog::fed() {
   if (was_expired && map_.on_reconnect == OnReconnect::drop)
     sink_.on_report(
         Level::warning,
-        "the coupler's watchdog is reset and fed again; its outputs stay off until they are written "
+        "the device's watchdog is reset and fed again; its outputs stay off until they are written "
         "('on_reconnect: restore' in the map would do that)");
   else
     sink_.on_report(Level::info,
-                    fmt::format("the coupler's watchdog is {}fed: outputs go off after {} ms of silence",
+                    fmt::format("the device's watchdog is {}fed: outputs go off after {} ms of silence",
                                 was_expired ? "reset and " : "", known_.timeout.count()));
 }
 

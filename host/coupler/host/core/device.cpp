@@ -182,7 +182,7 @@ Result<> Device::connect_only() {
 Result<> Device::connect_again() {
   Result<> result = connect_only();
   if (result && verify_ != Verify::off) result = prove_equal();
-  if (result && is_node_) result = fail(NotConnected{"the device has become another one"});
+  if (result && is_node_) result = fail(NotConnected{"another device answers at its address"});
   if (result) result = watchdog_.connected();
   replies_at_connect_ = link_.replies();
   if (result && poller_.last_answered()) result = link_.ask(*poller_.last_answered());
@@ -274,7 +274,7 @@ void Device::listen() {
   if (!tells || lets_waits_through) return;
   sink_.on_note(
       Level::warning,
-      "the node says that it tells changes, but the question for them (function code 65) ended the "
+      "the device says that it reports changes, but the question for them (function code 65) ended the "
       "last two connections that it was sent on; its points are polled while this connection lasts. Where a "
       "gateway does not let the question through, say so in the map: changes: off");
 }

@@ -35,10 +35,9 @@ Result<> Device::prove_equal() {
 /// Some couplers do not answer a request for addresses that they do not have. The connection is replaced,
 /// so that a late answer is not taken for the answer to another request.
 Result<> Device::treat_as_foreign(const Error& error) {
-  sink_.on_note(Level::info,
-                fmt::format("the device does not answer the request for its identity ({}): it is "
-                            "read as a foreign coupler",
-                            to_string(error)));
+  sink_.on_note(Level::info, fmt::format("the device does not answer the request for its identity ({}): it "
+                                         "is read as a foreign device, without comparing maps",
+                                         to_string(error)));
   answers_identity_ = false;
   identity_suffices_ = false;
   return connect_only();

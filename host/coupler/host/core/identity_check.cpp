@@ -15,7 +15,7 @@ namespace {
 using Verdict = Identity::Verdict;
 
 Identity unreadable(std::uint64_t fingerprint, const std::string& why) {
-  return {Verdict::different, fingerprint, {"the node's map cannot be compared: " + why}, {}};
+  return {Verdict::different, fingerprint, {"the device's map cannot be compared: " + why}, {}};
 }
 
 /// The node does not give its map. Other exceptions pass: it is busy, or behind a gateway and away.
@@ -84,14 +84,15 @@ std::string silence_text(const Map& known, const Error& error) {
         "the device accepts connections, but instead of answering the request for its identity {}; it may "
         "take none "
         "from "
-        "this machine (a node's 'allow'), have as many as it can, or be starting. If it is a foreign coupler "
+        "this machine ('allow' of a coupler-node), have as many as it can, or be starting. If it is a "
+        "foreign device "
         "that does so with addresses it does not have, give its map 'verify: off', or start with --verify "
         "off "
         "(a client: Options::verify)",
         to_string(error));
   return fmt::format(
       "{}, but unit {} does not answer the request for its identity: {}; check that the device runs, and "
-      "that 'unit' is its unit id. If it is a foreign coupler that ignores addresses it does not have, or "
+      "that 'unit' is its unit id. If it is a foreign device that ignores addresses it does not have, or "
       "answers nonsense, give its map 'verify: off', or start with --verify off (a client: "
       "Options::verify)",
       is_unit_away(error) ? "the gateway answers" : "the device accepts connections", known.connection.unit,

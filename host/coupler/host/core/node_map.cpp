@@ -104,8 +104,8 @@ tl::expected<MapPtr, std::string> load_node_map(const std::string& text, const i
                                                 const MapLoader& load) {
   if (crc32(text) != head.map_crc)
     return tl::make_unexpected(
-        fmt::format("checksum {:08x} instead of {:08x}; restart the node", crc32(text), head.map_crc));
-  LoadResult result = load(text, "the node's map");
+        fmt::format("checksum {:08x} instead of {:08x}; restart the device", crc32(text), head.map_crc));
+  LoadResult result = load(text, "the device's map");
   if (result.map) return result.map;
   std::string why = "it does not load";
   for (const Diagnostic& diagnostic : shortened(std::move(result.diagnostics)))

@@ -15,7 +15,7 @@ using modbus::Change;
 constexpr std::chrono::seconds told_within(1);
 /// All that a node keeps, in replies that follow each other at once.
 constexpr std::chrono::seconds all_told_within(2);
-constexpr auto not_told = "the node could not tell all its changes, and this one was among them";
+constexpr auto not_told = "the device could not report all its changes, and this outcome was among them";
 /// Two clocks drift apart by less than this part of the time that passes.
 constexpr int drift_part = 500;
 
@@ -114,7 +114,7 @@ void NodeOutputs::on_new_epoch() {
   const auto has_time = [now](const Waiting& which) { return which.what.what.due - told_within > now; };
   for (const Waiting& one : take_if(has_time))
     tell(one, Kind::cancelled, {now, {}}, to_string(modbus::Reason::reload));
-  lose("the node was started anew, or read a new map, before the outcome was heard");
+  lose("the device was restarted, or read a new map, before it had reported the outcome");
 }
 
 void NodeOutputs::on_heard(std::uint64_t newest, std::optional<Stamp> stamp) {

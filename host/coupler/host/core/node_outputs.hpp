@@ -13,7 +13,7 @@
 namespace coupler::host {
 
 /// The reason why an outcome is not heard.
-inline constexpr const char* told_no_more = "the node tells changes no more";
+inline constexpr const char* told_no_more = "the device no longer reports changes";
 
 /// The scheduled outputs that a node has accepted, until it tells their outcome. Changes of bits are passed
 /// on.

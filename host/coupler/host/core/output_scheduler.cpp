@@ -103,7 +103,7 @@ Result<> OutputScheduler::answer(const ScheduledWrite& what, std::promise<Schedu
   if (can_node(what, listener)) {
     const Result<std::optional<ScheduleAnswer>> given = give_to_node(what, listener);
     if (!given) {
-      to.set_value({0, "it may be carried out or not: " + to_string(given.error())});
+      to.set_value({0, "it may or may not be carried out: " + to_string(given.error())});
       return tl::make_unexpected(given.error());
     }
     if (*given) {
@@ -147,22 +147,22 @@ Result<std::optional<ScheduleAnswer>> OutputScheduler::give_to_node(const Schedu
     by_node_.add(reply->number, due, {number, what});
     // The answer to the wait has come before that to this request, and was the last one.
     if (!listener.is_active()) by_node_.lose(told_no_more);
-    return std::optional(ScheduleAnswer{number, "accepted: the node does it"});
+    return std::optional(ScheduleAnswer{number, "accepted: the device does it"});
   }
   const ExceptionReply* exception = exception_in(reply.error());
   if (exception == nullptr || is_unit_away(reply.error())) return tl::make_unexpected(reply.error());
   // A gateway before it does not know the function; or it is this output that this client may not write,
   // which a write will tell. Nothing is between the two ends of TLS.
   if (exception->code == Exception::illegal_function && !map_.connection.tls.present()) return std::nullopt;
-  return ScheduleAnswer{0, "the node refuses it with " + refusal(exception->code)};
+  return ScheduleAnswer{0, "the device refuses it with " + refusal(exception->code)};
 }
 
 ScheduleAnswer OutputScheduler::keep(const ScheduledWrite& what) {
   if (what.duration.count() > 0)
-    return {0, fmt::format(
-                   "only a node ends an output by itself, and no part of a register. Leave out the duration "
-                   "(how_long: 0). Schedule a second write of {} to end it",
-                   point(what).name)};
+    return {0,
+            fmt::format("only a coupler-node ends an output by itself, and not a part of a register. Leave "
+                        "out the duration (how_long: 0). Schedule a second write of {} to end it",
+                        point(what).name)};
   const std::uint32_t number = accept(what, false);
   by_driver_.add({number, what});
   return {number, "accepted: the driver does it"};
@@ -191,10 +191,12 @@ Result<> OutputScheduler::answer_cancel(std::uint32_t number, std::promise<CallA
     return {};
   }
   if (exception_in(cancelled.error()) == nullptr || is_unit_away(cancelled.error())) {
-    to.set_value({false, "it may be carried out or not: " + to_string(cancelled.error())});
+    to.set_value({false, "it may or may not be carried out: " + to_string(cancelled.error())});
     return cancelled;
   }
-  to.set_value({false, "too late: it has begun, or the node has ended it; its outcome comes on scheduled"});
+  to.set_value(
+      {false,
+       "too late: it has begun, or the device has ended it; its outcome comes on the topic scheduled"});
   return {};
 }
 
@@ -204,7 +206,7 @@ void OutputScheduler::disconnected(const std::string& why) {
   cancels_.close(closed);
   if (!busy_) return;
   by_driver_.cancel(to_string(modbus::Reason::connection));
-  by_node_.lose("the connection ended before the outcome was heard");
+  by_node_.lose("the connection ended before the outcome was reported");
   note();
 }
 

@@ -129,7 +129,7 @@ void Poller::on_exception(modbus::Exception code) {
     case modbus::Exception::illegal_function:
       if (is_node_)
         return on_rejection(code, "cannot be read: this client has no right to",
-                            "it is read again when the node has read its map again");
+                            "it is read again when the device has read its map again");
       statistics_.rejected();
       values_.rejected(span.points, code);
       sink_.on_no_values(span.points, clock_.now());

@@ -37,7 +37,7 @@ std::string to_string(modbus::Reason reason) {
     case Reason::overwritten: return "another write to the same point";
     case Reason::watchdog: return "the watchdog expired";
     case Reason::safe_state: return "the outputs went to their safe state";
-    case Reason::reload: return "the node read a new map, lost or found a chip, or ended";
+    case Reason::reload: return "the device read a new map, lost or found a chip, or ended";
     case Reason::connection: return "the connection ended";
     case Reason::hardware: return "the output could not be driven, or does not take the value";
     case Reason::locked: return "the watchdog keeps outputs in their safe state until it is reset";

@@ -114,7 +114,7 @@ Result<> TcpChannel::discard_unasked() {
           BadFrame{"bytes have come that nobody asked for: without transaction ids they could be taken "
                    "for the next reply"});
   }
-  return fail(BadFrame{"bytes come without end, and nothing was asked"});
+  return fail(BadFrame{"bytes keep coming although nothing was asked"});
 }
 
 ssize_t TcpChannel::take(Span<std::uint8_t> room) {

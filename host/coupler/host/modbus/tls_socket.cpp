@@ -55,7 +55,7 @@ class StreamSocket final : public TlsSocket {
 
  private:
   static constexpr const char* stuck =
-      "the device sends messages of TLS itself and does not read the answers to them";
+      "the device keeps sending messages of TLS itself, and does not read the answers to them";
 
   std::string handshake_problem() const {
     const std::string& problem = stream_.problem();

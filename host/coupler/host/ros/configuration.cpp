@@ -60,7 +60,7 @@ class MapFinder {
     if (settings.address || settings.serial) return from_node({}, settings);
     return fail(
         wrong_call,
-        "no map; give one by --map MAP, or --address HOST of a node that serves its map (--help shows "
+        "no map; give one by --map MAP, or --address HOST of a device that serves its map (--help shows "
         "examples)");
   }
 
@@ -144,7 +144,7 @@ class MapFinder {
     const auto served = wait_for_map(link, where, diagnostics);
     if (!served) return tl::make_unexpected(served.error());
     if (!*served)
-      return fail(wrong_input, where + " serves no map: it is a foreign coupler; give its map by --map MAP");
+      return fail(wrong_input, where + " serves no map: it is a foreign device; give its map by --map MAP");
     const auto owner = load_node_map((*served)->text, (*served)->head, load_served_map);
     if (!owner)
       return fail(wrong_input, fmt::format("the map of {} cannot be used: {}", where, owner.error()));

@@ -15,6 +15,7 @@
 #include "coupler/host/ros/program.hpp"
 #include "coupler/host/ros/start_progress.hpp"
 #include "coupler/map/printable.hpp"
+#include "coupler/plan/explain.hpp"
 #include "coupler/plan/planner.hpp"
 
 namespace coupler::host {
@@ -173,8 +174,8 @@ ServiceThread::ReadAnswer DeviceServices::answer_read(const std::string& name) {
     return answer;
   }
   const Point& point = **named;
-  if (plan::why_not_read(map_, point)) {
-    answer.message = fmt::format("{} is never read", point.name);
+  if (const auto reason = plan::why_not_read(map_, point)) {
+    answer.message = fmt::format("{} is never read: it is {}", point.name, plan::words_of(*reason));
     return answer;
   }
   const std::uint32_t index = index_of(point);

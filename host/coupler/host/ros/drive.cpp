@@ -130,7 +130,7 @@ int drive(const Devices& devices, Node& node) {
   } catch (const std::exception& error) {  // no thread or no memory is left, or ROS 2 refuses
     failure = what_failed(error);
   } catch (...) {  // XmlRpc's, which has no base
-    failure = "ROS gave an answer that is none";
+    failure = "ROS gave an answer that cannot be read";
   }
   if (Shutdown::has_failed_thread && !failure) failure.emplace("one of its threads has failed");
   const std::chrono::seconds patience(5 + drivers.size());

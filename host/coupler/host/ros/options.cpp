@@ -12,7 +12,8 @@ namespace coupler::host {
 namespace {
 
 constexpr const char* description =
-    "Drives a Modbus coupler, over TCP or on a serial line: every point of its map becomes a ROS topic "
+    "Drives a Modbus device, such as an I/O coupler or a PLC, over TCP or on a serial line: every point of "
+    "its map becomes a ROS topic "
     "<name>/<point>, every writable "
     "one also\n"
     "listens to <name>/<point>/write.";

@@ -17,7 +17,7 @@ std::string place_error(const Settings& settings, const Connection& connection) 
   if (!connection.tls.ca.empty() && !connection.tls.pin.empty())
     return "both ca and pin are given; give the device's authority, or the pin of its certificate";
   if (connection.is_rtu() && connection.tls.present())
-    return "a coupler that speaks RTU has no TLS; leave out framing: rtu, or the certificate";
+    return "a device that speaks RTU has no TLS; leave out framing: rtu, or the certificate";
   if (!connection.is_rtu() || is_rtu_unit(connection.unit)) return {};
   return fmt::format("unit {} cannot be asked; with RTU give 1 to 247", connection.unit);
 }

@@ -237,12 +237,12 @@ SettingKey maps_row(SettingKey row) {
 // NOLINTNEXTLINE(readability-function-size): a table
 const std::vector<SettingKey>& setting_keys() {
   static const std::vector<SettingKey> keys{
-      row<std::string>(
-          text_key("map",
-                   "the device's map: a YAML or JSON file, or the address of a node, as tcp:// or "
-                   "tls://HOST[:PORT][/UNIT]",
-                   "mapping"),
-          &Settings::map, map_place),
+      row<std::string>(text_key("map",
+                                "the device's map: a YAML or JSON file, or the address of a device that "
+                                "serves it, as tcp:// or "
+                                "tls://HOST[:PORT][/UNIT]",
+                                "mapping"),
+                       &Settings::map, map_place),
       maps_row({"maps", "", Kind::list, 0, 0, "",
                 "several devices in one process: their maps, as in --maps a.yaml,b.yaml; with names of their "
                 "own, as in "
@@ -251,7 +251,7 @@ const std::vector<SettingKey>& setting_keys() {
           text_key("name", "namespace of the topics, instead of the map's"), &Settings::name, ros_name,
           [](Map & map) -> auto& { return map.name; }),
       row<std::string>(
-          text_key("address", "host name or IP address; alone, without a map: a node that serves its own"),
+          text_key("address", "host name or IP address; alone, without a map: a device that serves its own"),
           &Settings::address, host_address, [](Map & map) -> auto& { return map.connection.address; }),
       row<std::uint16_t>(
           whole_key("port", 1, 65535, "TCP port; 502 if the map has none"), &Settings::port,
@@ -277,13 +277,13 @@ const std::vector<SettingKey>& setting_keys() {
       row<bool>(
           text_key("rs485", "true: the port's driver switches the direction of RS-485"), &Settings::rs485,
           boolean, [](Map & map) -> auto& { return map.connection.serial.rs485; }),
-      tls_row("certificate", "file of this machine's certificate, for a coupler with TLS",
+      tls_row("certificate", "file of this machine's certificate, for a device with TLS",
               &Settings::certificate, file, &Tls::certificate),
       tls_row("key", "file of its key", &Settings::key, file, &Tls::key),
-      tls_row("ca", "file of the authority of the coupler's certificate", &Settings::ca, file, &Tls::ca),
-      tls_row("tls_name", "name in the coupler's certificate, if not its address", &Settings::tls_name,
+      tls_row("ca", "file of the authority of the device's certificate", &Settings::ca, file, &Tls::ca),
+      tls_row("tls_name", "name in the device's certificate, if not its address", &Settings::tls_name,
               host_name, &Tls::name),
-      tls_row("pin", "pin of the coupler's certificate, instead of ca; `coupler pin` prints it",
+      tls_row("pin", "pin of the device's certificate, instead of ca; `coupler pin` prints it",
               &Settings::pin, pin, &Tls::pin),
       row<double>(
           real_key("rate", 0.001, 10000, " Hz", "polling rate in Hz"), &Settings::rate, number<double>,
@@ -295,7 +295,7 @@ const std::vector<SettingKey>& setting_keys() {
       row<Verify>(
           text_key(
               "verify",
-              "if the node's map differs: require (do not talk to it), warn (go on) or off (do not ask); "
+              "if the device's map differs: require (do not talk to it), warn (go on) or off (do not ask); "
               "instead of the map's"),
           &Settings::verify, word<Verify>, [](Map & map) -> auto& { return map.verify; }),
       row<Poll>(

@@ -20,7 +20,7 @@ constexpr const char* help =
     "Examples:\n"
     "  coupler_driver _map:=device.yaml\n"
     "  coupler_driver --map device.yaml --address 192.168.10.101 --rate 50\n"
-    "  coupler_driver _address:=raspberrypi        (a node that serves its map)\n"
+    "  coupler_driver _address:=raspberrypi        (a device that serves its map)\n"
     "  coupler_driver --map gripper.yaml --serial /dev/ttyUSB0\n"
     "  coupler_driver _maps:=[press.yaml,belt.yaml] _belt/address:=192.168.10.102\n"
     "  rostopic echo /device/in_A\n"

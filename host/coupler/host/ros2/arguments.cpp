@@ -21,7 +21,7 @@ constexpr std::string_view help =
     "Examples:\n"
     "  coupler_driver --map device.yaml\n"
     "  coupler_driver --map device.yaml --address 192.168.10.101 --rate 50\n"
-    "  coupler_driver --address raspberrypi        (a node that serves its map)\n"
+    "  coupler_driver --address raspberrypi        (a device that serves its map)\n"
     "  ros2 run coupler_driver coupler_driver --ros-args -p map:=$PWD/device.yaml -r __ns:=/cell\n"
     "  coupler_driver --map gripper.yaml --serial /dev/ttyUSB0\n"
     "  coupler_driver --maps press.yaml,belt.yaml --ros-args -p belt.address:=192.168.10.102\n"
