@@ -30,7 +30,7 @@ constexpr Alert alerts[] = {
     {44, "certificate_revoked", "this certificate is revoked"},
     {45, "certificate_expired", "this certificate has expired, or its clock is wrong"},
     {46, "certificate_unknown", "it does not accept this certificate"},
-    {48, "unknown_ca", "this certificate is from an authority that it does not believe"},
+    {48, "unknown_ca", "this certificate is from an authority that it does not trust"},
     {49, "access_denied", "this certificate may not connect"},
     {51, "decrypt_error", "a signature is wrong"},
     {70, "protocol_version", "it speaks neither TLS 1.2 nor TLS 1.3"},

@@ -174,8 +174,8 @@ tl::expected<void, std::string> believe(SSL_CTX* context, Side side, const Crede
   if (!authorities) return problem(authorities.error());
   if (authorities->empty() && (side == Side::server || !credentials.ca.empty()))
     return problem(
-        "the authority's file has no PEM certificate ('-----BEGIN CERTIFICATE-----'), so that nobody "
-        "could be believed; 'openssl x509 -inform DER' converts one");
+        "the authority's file has no PEM certificate ('-----BEGIN CERTIFICATE-----'), so that nobody could "
+        "be trusted; 'openssl x509 -inform DER' converts one");
   for (const CertificatePtr& authority : *authorities) {
     X509_STORE_add_cert(store, authority.get());
     SSL_CTX_add_client_CA(context, authority.get());

@@ -241,7 +241,7 @@ std::string problem_text(int error, const X509* certificate, const X509* own) {
           "{} certificate has a weak key or signature; P-256, or RSA with 2048 bits and SHA-256, is the "
           "least",
           whose(certificate));
-    default: return fmt::format("its certificate is not believed: {}", X509_verify_cert_error_string(error));
+    default: return fmt::format("its certificate is not trusted: {}", X509_verify_cert_error_string(error));
   }
 }
 

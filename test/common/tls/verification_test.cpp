@@ -69,7 +69,7 @@ TEST(Verification, Another_authority_is_refused_and_each_side_says_why) {
   const auto [server, client] =
       problems_of(credentials_of(test_node()), credentials_of(test_client(), other));
   EXPECT_THAT(server, HasSubstr("another authority"));
-  EXPECT_THAT(client, AllOf(HasSubstr("unknown_ca"), HasSubstr("authority that it does not believe")));
+  EXPECT_THAT(client, AllOf(HasSubstr("unknown_ca"), HasSubstr("authority that it does not trust")));
   const auto [of_server, of_client] =
       problems_of(credentials_of(test_node(), other), credentials_of(test_client()));
   EXPECT_THAT(of_client, HasSubstr("another authority"));

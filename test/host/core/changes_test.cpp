@@ -169,7 +169,7 @@ TEST_F(ChangesTest, After_a_new_epoch_everything_is_read_once) {
   run_for(seconds(3));
   EXPECT_EQ(sink->values["lamp"].back(), 1);
   EXPECT_EQ(device.count("read coils 5+1") + device.count("read discrete_inputs 3+1"), 2U);
-  EXPECT_EQ(sink->reported("counts its changes anew"), 1);
+  EXPECT_EQ(sink->reported("count of changes starts again"), 1);
 }
 
 TEST_F(ChangesTest, In_a_new_epoch_the_node_may_have_another_clock) {

@@ -130,7 +130,7 @@ tl::expected<void, std::string> LineRequests::request_sampled(const std::vector<
   }
   auto plain = backend::request_inputs(group);
   if (!plain) return tl::unexpected(std::move(plain).error());
-  log_.write(fmt::format("{}: {}, so the level is looked at every {} ms", names_of(wanted), why,
+  log_.write(fmt::format("{}: {}, so the level is read every {} ms", names_of(wanted), why,
                          SampledInputs::period.count()));
   lines_.add(sampled_inputs(*std::move(plain), wanted));
   return rest.empty() ? tl::expected<void, std::string>() : request_sampled(rest, why);

@@ -99,10 +99,10 @@ void NodeRuntime::end_durations_that_do_not_fit() {
   Ending ending(*context_);
   ending.schedule.each_begun([&](ScheduledOutput& begun) {
     if (next_->state->fits(begun, *context_->state) || ending.end.of(begun, ending.now)) return;
-    log_.warn(fmt::format(
-        "{} {} to {}: not every output could be driven back at the end of its duration, and the new map does "
-        "not have them so: such an output stays as it is until it is written",
-        to_string(begun.table), begun.range.start(), begun.range.last()));
+    log_.warn(
+        fmt::format("{} {} to {}: not every output could be driven back at the end of its duration, and the "
+                    "new map has other outputs there or none: those stay as they are until they are written",
+                    to_string(begun.table), begun.range.start(), begun.range.last()));
   });
 }
 

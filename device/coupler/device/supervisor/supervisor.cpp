@@ -121,7 +121,7 @@ Worker::End Supervisor::watch_over(Worker& process) {
     if (has_lost_one_ended()) {
       Worker::End end = this->end(process);
       end.in_order = false;
-      end.how = "was replaced: an earlier one, which hung, has ended and may have moved lines";
+      end.how = "was replaced: an earlier one, which hung, has ended and may have driven lines";
       return end;
     }
     const bool was_heard = process.last_beat() != std::exchange(heard, process.last_beat());

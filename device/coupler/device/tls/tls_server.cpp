@@ -50,7 +50,7 @@ void TlsServer::put_in_force(Listener listener, TlsRules rules) {
     if (connection.state() == TlsConnection::State::handshake) connection.close();
     if (connection.state() != TlsConnection::State::open) continue;
     if (const auto why = why_not_any_more(connection, former)) {
-      log_.write(fmt::format("'{}' ({}) may not stay: {}", connection.peer().name,
+      log_.write(fmt::format("'{}' ({}) is disconnected: {}", connection.peer().name,
                              host_of(connection.address()), *why));
       connection.close();
     }

@@ -122,7 +122,7 @@ void ChangeListener::begin_epoch(const modbus::ChangesReply& reply) {
   pause(longest);
   asks_for_watchdog_ = true;
   longest_wait_ = std::min(longest_wait_, shortest);
-  say(epochs_, Level::info, "the device counts its changes anew; every point is read once");
+  say(epochs_, Level::info, "the device's count of changes starts again; every point is read once");
   changes_.on_new_epoch();
   changes_.on_gap();
 }
@@ -152,7 +152,8 @@ void ChangeListener::map_clock(const modbus::ChangesReply& reply, const WaitAnsw
   if (outcome == ClockMapping::Outcome::taken) return;
   say(jumps_, Level::warning,
       outcome == ClockMapping::Outcome::jumped
-          ? "the device's clock or this machine's has jumped: time stamps begin anew"
+          ? "the device's clock or this machine's has jumped; time stamps before and after do not fit "
+            "together"
           : "the times that the device reports make no sense: they are not used as time stamps");
 }
 

@@ -111,8 +111,9 @@ Result<Identity> check_identity(Link& link, const Map& known, const MapLoader& l
     if (!is_refusal(text.error())) return tl::make_unexpected(text.error());
     return unreadable(
         head.fingerprint,
-        to_string(text.error()) +
-            (is_no_right(text.error()) ? ": it gives it only to clients that may read every point" : ""));
+        to_string(text.error()) + (is_no_right(text.error())
+                                       ? ": it gives its map only to clients that may read every point"
+                                       : ""));
   }
   const auto device = load_node_map(*text, head, load);
   if (!device) return unreadable(head.fingerprint, device.error());

@@ -73,10 +73,11 @@ void Writer::suspect(const std::vector<Write>& writes, const Error& why) {
   for (const Write& write : writes) {
     if (suspects_.insert(write.point).second || last_written_.erase(write.point) == 0) continue;
     suspects_.erase(write.point);
-    sink_.on_report(Level::error,
-                    fmt::format("{} is not restored: the device carries the write out or not, and ends the "
-                                "connection each time ({}); write it again, and look at the device",
-                                name(write.point), to_string(why)));
+    sink_.on_report(
+        Level::error,
+        fmt::format("{} is not restored: the device ends the connection each time it is written ({}), and "
+                    "may or may not have carried that out; write it again, and check the device",
+                    name(write.point), to_string(why)));
   }
 }
 

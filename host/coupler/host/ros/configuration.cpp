@@ -85,7 +85,7 @@ class MapFinder {
     std::error_code ignored;
     if (fs::path(path).is_absolute() || fs::exists(path, ignored)) return;
     log_(Level::error,
-         fmt::format("a relative path counts from {}; {}", fs::current_path(ignored).string(),
+         fmt::format("a relative path starts from {}; {}", fs::current_path(ignored).string(),
                      fmt::format(fmt::runtime(dialect_.relative_path), fmt::arg("path", path))));
   }
 
@@ -107,7 +107,7 @@ class MapFinder {
       const std::string waiting =
           fmt::format("waiting for the map of {}: {}{}; trying again", where, to_string(served.error()),
                       is_no_right(served.error())
-                          ? ": it gives it only to clients that may read every point; give its map by "
+                          ? ": it gives its map only to clients that may read every point; give its map by "
                             "--map MAP, or a certificate whose role has 'read: all'"
                           : "");
       if (waiting != logged) log_(Level::warning, waiting);
