@@ -5,7 +5,10 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 namespace coupler::host {
 namespace {
@@ -78,10 +81,32 @@ TEST_F(TopicCheckTest, What_fits_and_a_type_that_is_any_or_not_known_is_not_told
                 IsEmpty());
 }
 
-TEST_F(TopicCheckTest, The_other_end_of_a_topic_is_nobodys_business) {
-  EXPECT_THAT(told({{"/cell/press/lamp/write", "/recorder", subscribes, "std_msgs/Int32"},
-                    {"/cell/press/lamp", "/player", publishes, "std_msgs/Int32"}}),
-              IsEmpty());
+TEST_F(TopicCheckTest, Who_else_subscribes_to_writes_is_nobodys_business) {
+  EXPECT_THAT(told({{"/cell/press/lamp/write", "/recorder", subscribes, "std_msgs/Int32"}}), IsEmpty());
+}
+
+TEST_F(TopicCheckTest, Who_else_publishes_what_this_node_does_is_told_where_to_write) {
+  for (const auto& [topic, write] :
+       {std::pair{"/cell/press/lamp", "/cell/press/lamp/write"}, {"/clamp", "/cell/press/valve/write"}})
+    for (const char* const type : {"std_msgs/Bool", "std_msgs/Int32", ""})
+      EXPECT_THAT(told({{topic, "/ui", publishes, type}}),
+                  ElementsAre(fmt::format(
+                      "{}: node /ui publishes here, too: its values are not the device's. If they are "
+                      "to be written, publish at {}; otherwise remap this topic of /ui",
+                      topic, write)));
+  for (const char* const topic : {"/cell/press/flow", "/cell/press/flow/stamped"})
+    EXPECT_THAT(told({{topic, "/player", publishes, "*"}}),
+                ElementsAre(fmt::format(
+                    "{}: node /player publishes here, too: its values are not the device's. Remap "
+                    "this topic of /player",
+                    topic)));
+}
+
+TEST_F(TopicCheckTest, Another_driver_of_the_device_is_not_told_of_at_each_topic) {
+  EXPECT_THAT(told({{"/cell/press/lamp", "/other", publishes, "std_msgs/Bool"},
+                    {"/cell/press/online", "/other", publishes, "std_msgs/Bool"},
+                    {"/cell/press/flow", "/ui", publishes, "std_msgs/UInt16"}}),
+              ElementsAre(StartsWith("/cell/press/flow: node /ui ")));
 }
 
 TEST_F(TopicCheckTest, A_publisher_of_what_is_read_only_is_told_why) {
@@ -156,10 +181,10 @@ TEST_F(TopicCheckTest, A_topic_of_others_below_the_device_is_not_told) {
 TEST_F(TopicCheckTest, What_need_not_be_looked_at_is_known_by_its_name) {
   EXPECT_EQ(check.needed_type("/cell/press/lamp/write", publishes), "std_msgs/Bool");
   EXPECT_EQ(check.needed_type("/cell/press/lamp/write", subscribes), "");
-  for (const char* const topic : {"/cell/press/lmap", "/clamp/write", "/clamp/stamped"})
-    EXPECT_TRUE(check.may_be_mistaken(topic)) << topic;
-  for (const char* const topic : {"/cell/press/lamp", "/cell/press/lamp/write", "/tf", "/write"})
-    EXPECT_FALSE(check.may_be_mistaken(topic)) << topic;
+  for (const char* const topic : {"/cell/press/lmap", "/clamp", "/clamp/write", "/clamp/stamped"})
+    EXPECT_TRUE(check.concerns(topic)) << topic;
+  for (const char* const topic : {"/tf", "/write", "/cell/lamp"})
+    EXPECT_FALSE(check.concerns(topic)) << topic;
 }
 
 TEST_F(TopicCheckTest, Findings_of_which_the_text_is_a_guess_stand_last) {

@@ -81,6 +81,19 @@ class WrongTopics:
         self.warned("valve", f"node {self.SUBSCRIBER} subscribes, and the point valve is write only: it receives nothing. "
                     "If the device lets it be read, give it 'access: read_write' in the map")
 
+    def test_another_publisher_of_the_drivers_own_topic_is_told_of_with_the_one_to_write_to(self):
+        self.begin()
+        self.publish(f"/{self.name}/lamp", Bool)
+        self.warned("lamp", f"node {self.PUBLISHER} publishes here, too: its values are not the device's. If they are to be "
+                    f"written, publish at /{self.name}/lamp/write; otherwise remap this topic of {self.PUBLISHER}")
+        self.publish(f"/{self.name}/flow", UInt16)
+        self.warned("flow", f"node {self.PUBLISHER} publishes here, too: its values are not the device's. Remap this topic of "
+                    f"{self.PUBLISHER}")
+        self.publish(f"/{self.name}/flow/stamped", UInt64Stamped)
+        self.warned("flow/stamped", f"node {self.PUBLISHER} publishes here, too: its values are not the device's. Remap")
+        self.wait_for_another_look()
+        self.assertEqual(self.count("publishes here, too"), 3)
+
     def test_a_misspelt_topic_at_whose_other_end_is_nobody_is_told_with_the_nearest_one(self):
         self.begin()
         self.publish(f"/{self.name}/lmap/write", Bool)

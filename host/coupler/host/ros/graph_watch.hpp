@@ -63,8 +63,8 @@ inline std::vector<Finding> findings_of(const std::vector<DuplicateDriver>& dupl
     findings.push_back(
         {topic + node, [topic = topic, node = node] {
            return fmt::format(
-               "{} also publishes {}: two drivers write to the same device, or two devices have "
-               "the same name. Stop one of the drivers, or give its device another name by --name",
+               "{} also publishes {}: two drivers write to the same device, two devices have the same name, "
+               "or a recording is played. Stop one of them, or give it other topics (a driver by --name)",
                node, topic);
          }});
   return findings;

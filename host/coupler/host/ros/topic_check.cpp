@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros/topic_check.hpp"
 
+#include <algorithm>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -99,16 +100,21 @@ const TopicCheck::Device* TopicCheck::device_of(const std::string& topic) const 
   return nearest;
 }
 
-bool TopicCheck::may_be_mistaken(const std::string& topic) const {
-  if (published_.count(topic) > 0 || written_.count(topic) > 0) return false;
-  return device_of(topic) != nullptr || point_of(published_, before(write_end, topic)) != nullptr ||
+bool TopicCheck::concerns(const std::string& topic) const {
+  return published_.count(topic) > 0 || written_.count(topic) > 0 || device_of(topic) != nullptr ||
+         point_of(published_, before(write_end, topic)) != nullptr ||
          point_of(published_, before_stamped_end(topic)) != nullptr ||
          point_of(written_, topic + std::string(write_end)) != nullptr;
 }
 
 std::vector<Finding> TopicCheck::check(const std::vector<Endpoint>& others) const {
-  Names met[2];  // topics that somebody subscribes to, and those that somebody publishes
-  for (const Endpoint& other : others) met[other.publishes ? 1 : 0].insert(other.topic);
+  Names met[2];   // topics that somebody subscribes to, and those that somebody publishes
+  Names drivers;  // they publish `online`, too, and are told of by DuplicateDriver
+  for (const Endpoint& other : others) {
+    met[other.publishes ? 1 : 0].insert(other.topic);
+    if (other.publishes && !before("/online", other.topic).empty() && published_.count(other.topic) > 0)
+      drivers.insert(other.node);
+  }
   std::vector<Finding> findings;
   std::vector<Finding> guesses;
   for (const Endpoint& other : others) {
@@ -116,7 +122,12 @@ std::vector<Finding> TopicCheck::check(const std::vector<Endpoint>& others) cons
       check_type(other, needed, findings);
       continue;
     }
-    if (!may_be_mistaken(other.topic)) continue;
+    if (published_.count(other.topic) > 0) {
+      if (drivers.count(other.node) == 0)
+        findings.push_back({key_of(other), [this, other] { return foreign(other); }});
+      continue;
+    }
+    if (written_.count(other.topic) > 0) continue;
     const bool is_alone = met[other.publishes ? 0 : 1].count(other.topic) == 0;
     if (!check_direction(other, is_alone, findings) && is_alone)
       guesses.push_back({key_of(other), [this, other] { return misspelt(other); }, false});
@@ -135,6 +146,20 @@ void TopicCheck::check_type(const Endpoint& other, std::string_view needed, std:
                                                            : "it receives nothing. Subscribe to",
                                            needed);
                       }});
+}
+
+/// Subscribers cannot tell what it publishes from what this node does.
+std::string TopicCheck::foreign(const Endpoint& other) const {
+  const Point* const point = point_of(published_, other.topic);
+  const auto write = std::find_if(written_.begin(), written_.end(),
+                                  [point](const auto& topic) { return topic.second.point == point; });
+  return fmt::format(
+      "{}: node {} publishes here, too: its values are not the device's. {}emap this topic of {}",
+      other.topic, other.node,
+      write == written_.end()
+          ? "R"
+          : fmt::format("If they are to be written, publish at {}; otherwise r", write->first),
+      other.node);
 }
 
 /// A topic of a point that goes the other way only. False: it is none.

@@ -22,7 +22,7 @@ struct Endpoint {
 };
 
 /// The topics of this node, and what is wrong with what others do there: they use another type, or a name
-/// that leads nowhere. ROS lets them, and nothing comes.
+/// that leads nowhere, and nothing comes; or they publish what this node publishes. ROS lets them.
 class TopicCheck {
  public:
   /// `space`: where the device's topics are, "/cell/press". Maps and points must outlive it.
@@ -37,11 +37,10 @@ class TopicCheck {
 
   /// Returns the type that others must have at this topic; empty: this node has no such end of it.
   std::string_view needed_type(const std::string& topic, bool publishes) const;
-  /// Returns whether others may take it for one of this node's topics, which it is not.
-  bool may_be_mistaken(const std::string& topic) const;
+  /// Returns whether it is one of this node's topics, or others may take it for one.
+  bool concerns(const std::string& topic) const;
 
-  /// `others`: where needed_type() says something and where may_be_mistaken(). What is sure stands first.
-  /// They refer to this.
+  /// `others`: all ends of the topics that concerns() knows. What is sure stands first. They refer to this.
   std::vector<Finding> check(const std::vector<Endpoint>& others) const;
 
  private:
@@ -59,6 +58,7 @@ class TopicCheck {
   static const Point* point_of(const Topics& topics, const std::string& topic);
   const Device* device_of(const std::string& topic) const;
   static void check_type(const Endpoint& other, std::string_view needed, std::vector<Finding>& findings);
+  std::string foreign(const Endpoint& other) const;
   bool check_direction(const Endpoint& other, bool is_alone, std::vector<Finding>& findings) const;
   std::string misspelt(const Endpoint& other) const;
 

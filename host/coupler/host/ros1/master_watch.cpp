@@ -82,7 +82,7 @@ std::vector<DuplicateDriver> duplicates_of(const std::vector<std::string>& own, 
 void add_others(XmlRpcValue& all, bool publishes, const TopicCheck& topics, std::vector<Endpoint>& others) {
   for (int i = 0; i < all.size(); ++i) {
     const auto& topic = static_cast<std::string&>(all[i][0]);
-    if (topics.needed_type(topic, publishes).empty() && !topics.may_be_mistaken(topic)) continue;
+    if (!topics.concerns(topic)) continue;
     XmlRpcValue& nodes = all[i][1];
     for (int n = 0; n < nodes.size(); ++n)
       if (const auto& node = static_cast<std::string&>(nodes[n]); node != ros::this_node::getName())
@@ -188,7 +188,8 @@ void MasterWatch::update() {
   warn(duplicates_.update(findings_of(registrations_.duplicates()), "drivers"));
   std::vector<Endpoint> others = registrations_.others();
   types_.fill(others, topics_);
-  warn(wrong_topics_.update(topics_.check(others), "publishers and subscribers with a wrong type or name"));
+  warn(wrong_topics_.update(topics_.check(others),
+                            "publishers and subscribers at a wrong place or with a wrong type"));
 }
 
 void MasterWatch::check() {

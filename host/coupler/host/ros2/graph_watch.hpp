@@ -23,7 +23,6 @@ class GraphWatch {
   void warn(const std::vector<std::string>& lines);
   void warn_of_duplicates();
   void warn_of_wrong_topics();
-  void add_others(const std::string& topic, rcl::Node::Ends which, std::vector<Endpoint>& others) const;
 
   Node& log_;
   rcl::Node& node_;

@@ -10,6 +10,7 @@
 
 #include <cstdarg>
 #include <mutex>
+#include <set>
 #include <utility>
 
 #include "coupler/host/ros2/rcl/distro.hpp"
@@ -24,6 +25,11 @@ void log_one_at_a_time(const rcutils_log_location_t* location, int severity, con
   static std::mutex& mutex = *new std::mutex;  // never destroyed: used at the end of the program, too
   const std::lock_guard lock(mutex);
   rcl_logging_multiple_output_handler(location, severity, name, timestamp, format, arguments);
+}
+
+std::string full_name_of(std::string space, const char* node) {
+  if (space != "/") space += '/';
+  return space + node;
 }
 
 rcl_ret_t end(rcl_context_t* context) {
@@ -118,40 +124,50 @@ bool Node::graph_has_changed() {
   return result != RCL_RET_TIMEOUT;  // after a failure somebody has to look
 }
 
-std::vector<Node::End> Node::ends_of(const std::string& full_topic, Ends which) const {
-  std::vector<End> ends;
+std::vector<std::string> Node::publishers_of(const std::string& full_topic) const {
+  std::vector<std::string> nodes;
   rcutils_allocator_t allocator = rcutils_get_default_allocator();
   rcl_topic_endpoint_info_array_t found = rcl_get_zero_initialized_topic_endpoint_info_array();
-  const auto get_info =
-      which == Ends::publishers ? rcl_get_publishers_info_by_topic : rcl_get_subscriptions_info_by_topic;
-  if (get_info(get(), &allocator, full_topic.c_str(), false, &found) != RCL_RET_OK) {
+  if (rcl_get_publishers_info_by_topic(get(), &allocator, full_topic.c_str(), false, &found) != RCL_RET_OK) {
     take_error_text();
-    return ends;
+    return nodes;
   }
   for (std::size_t i = 0; i < found.size; ++i) {
     const rmw_topic_endpoint_info_t& info = found.info_array[i];
-    std::string node = info.node_namespace;
-    if (node != "/") node += '/';
-    node += info.node_name;
+    std::string& node = nodes.emplace_back(full_name_of(info.node_namespace, info.node_name));
     if (node.find("_UNKNOWN_") != std::string::npos) node.clear();
-    ends.push_back({std::move(node), info.topic_type});
   }
   ignore(rcl_topic_endpoint_info_array_fini(&found, &allocator));
-  return ends;
+  return nodes;
 }
 
-std::vector<Node::Topic> Node::topics() const {
-  std::vector<Topic> topics;
-  rcutils_allocator_t allocator = rcutils_get_default_allocator();
-  rcl_names_and_types_t found = rcl_get_zero_initialized_names_and_types();
-  if (rcl_get_topic_names_and_types(get(), &allocator, false, &found) != RCL_RET_OK) {
+std::vector<Node::End> Node::ends_of_others() const {
+  std::vector<End> ends;
+  rcutils_string_array_t names = rcutils_get_zero_initialized_string_array();
+  rcutils_string_array_t spaces = rcutils_get_zero_initialized_string_array();
+  if (rcl_get_node_names(get(), rcl_get_default_allocator(), &names, &spaces) != RCL_RET_OK)
     take_error_text();
-    return topics;
+  std::set<std::string> seen{full_name()};
+  for (std::size_t i = 0; i < names.size; ++i) {
+    const std::string node = full_name_of(spaces.data[i], names.data[i]);
+    if (!seen.insert(node).second) continue;
+    for (const bool publishes : {true, false}) {
+      const auto get_ends =
+          publishes ? rcl_get_publisher_names_and_types_by_node : rcl_get_subscriber_names_and_types_by_node;
+      rcutils_allocator_t allocator = rcutils_get_default_allocator();
+      rcl_names_and_types_t found = rcl_get_zero_initialized_names_and_types();
+      if (get_ends(get(), &allocator, false, names.data[i], spaces.data[i], &found) != RCL_RET_OK) {
+        take_error_text();  // it has gone
+        continue;
+      }
+      for (std::size_t t = 0; t < found.names.size; ++t)
+        for (std::size_t k = 0; k < found.types[t].size; ++k)
+          ends.push_back({found.names.data[t], node, publishes, found.types[t].data[k]});
+      ignore(rcl_names_and_types_fini(&found));
+    }
   }
-  for (std::size_t i = 0; i < found.names.size; ++i)
-    topics.push_back({found.names.data[i], {found.types[i].data, found.types[i].data + found.types[i].size}});
-  ignore(rcl_names_and_types_fini(&found));
-  return topics;
+  for (rcutils_string_array_t* const array : {&names, &spaces}) ignore(rcutils_string_array_fini(array));
+  return ends;
 }
 
 }  // namespace coupler::rcl

@@ -57,21 +57,20 @@ class Node {
   /// Returns whether an end of a topic or a name has come or gone since the last call. For one thread.
   bool graph_has_changed();
 
+  /// Returns the nodes that publish it, this one too, with their namespaces; empty: the graph does not know
+  /// the node (yet).
+  std::vector<std::string> publishers_of(const std::string& full_topic) const;
+
   /// One end of a topic.
   struct End {
-    std::string node;  ///< with its namespace; empty: the graph does not know it (yet)
+    std::string topic;
+    std::string node;  ///< both with their namespaces
+    bool publishes;    ///< or else it subscribes
     std::string type;
   };
-  enum class Ends { publishers, subscriptions };
-  /// Returns all that the topic has, those of this node too.
-  std::vector<End> ends_of(const std::string& full_topic, Ends which) const;
-
-  struct Topic {
-    std::string name;
-    std::vector<std::string> types;
-  };
-  /// Returns all topics of the graph.
-  std::vector<Topic> topics() const;
+  /// Returns those of all other nodes. They are asked for by node, since by topic each costs a look at all
+  /// ends of the graph. Of several nodes with the same name, one.
+  std::vector<End> ends_of_others() const;
 
  private:
   Handle<rcl_node_t> node_;
