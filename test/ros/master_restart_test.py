@@ -33,21 +33,26 @@ NODE = "/kept_driver"
 
 
 class MasterThatHangs(Relay):
-    """It answers no more where `answers` is not set."""
+    """It answers no more where `answers` is not set. `asked`: all that was sent to it."""
 
     def __init__(self, port):
         self.answers = threading.Event()
+        self.asked = b""
         super().__init__(port)
 
     def serve(self, client, node):
         back = threading.Thread(target=self.forward, args=(node, client), daemon=True)
         back.start()
-        self.forward(client, node)
+        self.forward(client, node, self.note)
         back.join(PATIENCE)
 
-    def forward(self, source, sink):
+    def note(self, data):
+        self.asked += data
+
+    def forward(self, source, sink, note=lambda _: None):
         try:
             while data := source.recv(65536):
+                note(data)
                 self.answers.wait()
                 sink.sendall(data)
             sink.shutdown(socket.SHUT_WR)
@@ -93,7 +98,6 @@ class MasterRestart(unittest.TestCase):
                              environment=self.environment) as driver:
             driver.wait_for("connected")
             self.publish_until_written(7)
-            wait_until(lambda: {"/kept/safe", "/kept/schedule"} <= set(self.of_node()[2]), "the services, which come last")
             before = self.of_node()
             self.assertIn("/kept/level", before[0])
             self.assertIn("/kept/goal/write", before[1])
@@ -124,17 +128,32 @@ class MasterRestart(unittest.TestCase):
     def call_until_it_works(self, *service):
         wait_until(lambda: "True" in self.in_ros("rosservice", "call", *service).communicate()[0], f"an answer of {service[0]}")
 
+    def master_that_hangs(self):
+        """And the environment of a driver that knows no other one."""
+        _, uri = self.start_master(free_port())
+        self.master = xmlrpc.client.ServerProxy(uri)
+        self.environment = {**os.environ, "ROS_MASTER_URI": uri}
+        relay = MasterThatHangs(int(uri.rstrip("/").rsplit(":", 1)[1]))
+        self.addCleanup(relay.stop)
+        return relay, {**os.environ, "ROS_MASTER_URI": f"http://localhost:{relay.port}/"}
+
+    def test_safe_values_can_be_had_before_anything_can_be_written(self):
+        relay, environment = self.master_that_hangs()
+        relay.answers.set()
+        with Device() as device:
+            path = process.write_map(FIRST.replace("{port}", str(device.port)))
+            with process.Process("coupler_driver", f"_map:={path}", environment=environment) as driver:
+                driver.wait_for("first: connected")
+                wait_until(lambda: b"/first/lamp/write" in relay.asked and b"/first/safe" in relay.asked, "both")
+        self.assertLess(relay.asked.index(b"/first/safe"), relay.asked.index(b"/first/lamp/write"))
+
     def starts_and_then_the_master_hangs(self, *others, first=FIRST):
         """A function: it starts a driver, has it write to the first of its devices, and then the master answers no more. `others`:
         maps of further devices, which are still started then."""
         self.device = Device().start()
         self.addCleanup(self.device.stop)
         maps = [process.write_map(text) for text in (first.replace("{port}", str(self.device.port)), *others)]
-        _, uri = self.start_master(free_port())
-        self.environment = {**os.environ, "ROS_MASTER_URI": uri}
-        relay = MasterThatHangs(int(uri.rstrip("/").rsplit(":", 1)[1]))
-        self.addCleanup(relay.stop)
-        environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{relay.port}/"}
+        relay, environment = self.master_that_hangs()
 
         def start():
             relay.answers.set()
@@ -142,7 +161,7 @@ class MasterRestart(unittest.TestCase):
             self.addCleanup(driver.end)
             driver.wait_for("first: connected")
             if not others:
-                self.call_until_it_works("/first/safe")  # the last of them: it has started
+                wait_until(lambda: "/first/p399/write" in dict(self.master.getSystemState("/test")[2][1]), "the last topic")
             self.call_until_it_works("/first/lamp/set", "true")
             self.assertEqual(self.device.tables["coils"][3], 1)
             relay.answers.clear()

@@ -99,22 +99,23 @@ void DeviceDriver::begin(const Followed& followed) {
   if (map_.poll == Poll::subscribed)
     for (std::uint32_t i = 0; i < map_.points.size(); ++i) thread_.want(i, false);
   thread_.start();
-  for_each_point(node_, map_, "have their topics for writes", [this](std::uint32_t i) {
-    if (is_writable(map_.points[i]))
-      subscriptions_.push_back(
-          node_.subscribe(topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
-  });
-  services_.start(
-      node_, {writes_, [this] { return driven().reset_watchdog(); }, [this] { return driven().make_safe(); },
-              [this](const ScheduledWrite& what) { return driven().schedule(what); },
-              [this](std::uint32_t number) { return thread_.cancel_scheduled(number); },
-              [this] { return thread_.scheduled(); }, [this] { return thread_.statistics(); }});
   if (map_.poll == Poll::subscribed)
     subscribers_.follow([this](std::uint32_t point, bool wanted) {
       forget(point);  // it is not read meanwhile
       thread_.want(point, wanted);
     });
   subscribers_.on_each([this](std::uint32_t point) { thread_.want(point, true); });
+  // Before what takes minutes for many points: as soon as something can be written, safe values can be had.
+  services_.start(
+      node_, {writes_, [this] { return driven().reset_watchdog(); }, [this] { return driven().make_safe(); },
+              [this](const ScheduledWrite& what) { return driven().schedule(what); },
+              [this](std::uint32_t number) { return thread_.cancel_scheduled(number); },
+              [this] { return thread_.scheduled(); }, [this] { return thread_.statistics(); }});
+  for_each_point(node_, map_, "have their topics and services for writes", [this](std::uint32_t i) {
+    if (!is_writable(map_.points[i])) return;
+    subscriptions_.push_back(node_.subscribe(topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
+    services_.offer_set(i);
+  });
 }
 
 /// The thread, for what drives outputs. ROS may ask for that while other devices are still started.

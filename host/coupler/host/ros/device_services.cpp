@@ -12,8 +12,6 @@
 #include "coupler/host/core/health.hpp"
 #include "coupler/host/core/named_write.hpp"
 #include "coupler/host/core/value_text.hpp"
-#include "coupler/host/ros/program.hpp"
-#include "coupler/host/ros/start_progress.hpp"
 #include "coupler/map/printable.hpp"
 #include "coupler/plan/explain.hpp"
 #include "coupler/plan/planner.hpp"
@@ -71,12 +69,13 @@ void DeviceServices::start(Node& node, Device device) {
   }
   urgent_calls_->start();
   read_calls_->start();
-  for_each_point(node, map_, "have their services", [&](std::uint32_t i) {
-    if (is_writable(map_.points[i]) && is_bit(map_.points[i]))
-      calls_->offer_set(name(fmt::format("{}/set", map_.points[i].name)),
-                        [this, i](bool on) { return answer_set(i, on); });
-  });
   calls_->start();
+}
+
+void DeviceServices::offer_set(std::uint32_t index) {
+  if (const Point& point = map_.points[index]; is_bit(point))
+    calls_->offer_set(fmt::format("{}/{}/set", map_.name, point.name),
+                      [this, index](bool on) { return answer_set(index, on); });
 }
 
 void DeviceServices::stop() {

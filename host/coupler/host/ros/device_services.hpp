@@ -44,8 +44,10 @@ class DeviceServices {
     std::function<DeviceSnapshot()> statistics;
   };
 
-  /// Offers the services.
+  /// Offers the services but for `set`.
   void start(Node& node, Device device);
+  /// Offers `set`, if the point, which is writable, is a bit.
+  void offer_set(std::uint32_t index);
   /// The device is not called any more.
   void stop();
 

@@ -121,7 +121,7 @@ class ServiceThread {
   /// Waits for the call in progress.
   virtual ~ServiceThread() = default;
 
-  // Before start().
+  // Before start(); offer_set() later, too.
 
   /// coupler_driver/Write: a point's name and its value as text.
   virtual void offer_write(
