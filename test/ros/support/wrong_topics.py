@@ -107,9 +107,10 @@ class WrongTopics:
         self.publish(f"/{self.name}/setpoint/write", UInt16)
         self.listen(f"/{self.name}/setpoint", UInt16)
         self.listen(f"/{self.name}/online", Bool)
-        # Two others talk to each other below the device's name, and somebody waits for a node that is none of ours.
-        self.publish(f"/{self.name}/lamb/write", Bool)
+        # Two others talk to each other below the device's name, and somebody waits for a node that is none of ours. The driver may
+        # look after the first of these lines: a publisher alone is told of.
         self.listen(f"/{self.name}/lamb/write", Bool)
+        self.publish(f"/{self.name}/lamb/write", Bool)
         self.listen(f"/{self.name}/filtered_pressure", Float32)
         self.publish("/elsewhere/lmap/write", Int32)
         self.wait_for_another_look()
