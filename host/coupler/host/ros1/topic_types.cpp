@@ -4,6 +4,7 @@
 #include <XmlRpcClient.h>
 #include <XmlRpcDispatch.h>
 #include <XmlRpcException.h>
+#include <ros/init.h>
 #include <ros/master.h>
 #include <ros/network.h>
 #include <ros/this_node.h>
@@ -12,14 +13,18 @@
 #include <memory>
 #include <utility>
 
+#include "coupler/host/ros/program.hpp"
+
 namespace coupler::host {
 namespace {
 
 using XmlRpc::XmlRpcDispatch;
 using XmlRpc::XmlRpcValue;
 
-/// For all answers together, in seconds: a node may hang.
-constexpr double patience = 1.0;
+/// A node may hang: all answers together are waited for this often and, in seconds, this long. The end of the
+/// driver waits for one of these waits.
+constexpr int most_waits = 20;
+constexpr double wait = 0.05;
 
 using Types = std::unordered_map<std::string, std::string>;
 
@@ -108,7 +113,7 @@ void TopicTypes::ask() {
     }
   }
   if (calls.empty()) return;
-  dispatch.work(patience);
+  for (int i = 0; i < most_waits && !Shutdown::requested && !ros::isShuttingDown(); ++i) dispatch.work(wait);
   for (auto& [client, types] : calls) {
     XmlRpcValue answer;
     if (client->executeCheckDone(answer) && answer.getType() == XmlRpcValue::TypeArray && answer.size() == 3)
