@@ -15,6 +15,15 @@ namespace {
 
 int exit_status(int of_cli11) { return of_cli11 == 0 ? 0 : 2; }
 
+/// With the version, if it does not know an argument.
+CLI::Error told(const CLI::App& program, const CLI::ParseError& error) {
+  std::string what = error.what();
+  const std::string version = program.version();
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) && !version.empty())
+    what += " (this is " + version + ", and a newer one may know it)";
+  return {error.get_name(), what, error.get_exit_code()};
+}
+
 /// CLI11 would only say that a command is required.
 void refuse_unknown_command(const CLI::App& program, int argc, const char* const* argv) {
   const std::string first = argc > 1 ? argv[1] : "-";
@@ -107,7 +116,7 @@ std::optional<int> Program::parse(int argc, const char* const* argv) {
     if (app_->get_require_subcommand_min() > 0) refuse_unknown_command(*app_, argc, argv);
     app_->parse(argc, argv);
   } catch (const CLI::ParseError& stopped) {
-    return exit_status(app_->exit(stopped));
+    return exit_status(app_->exit(told(*app_, stopped)));
   }
   return std::nullopt;
 }
@@ -119,7 +128,7 @@ std::optional<int> Program::parse(std::vector<std::string> arguments, std::strin
   } catch (const CLI::ParseError& stopped) {
     std::ostringstream out;
     std::ostringstream err;
-    const int status = exit_status(app_->exit(stopped, out, err));
+    const int status = exit_status(app_->exit(told(*app_, stopped), out, err));
     text += out.str() + err.str();
     return status;
   }

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "coupler/base/lower.hpp"
+#include "coupler/base/version.hpp"
 
 namespace coupler {
 namespace {
@@ -59,6 +60,14 @@ bool are_opposites(std::string_view a, std::string_view b) {
   return negates(a, b) || negates(b, a);
 }
 
+/// "adres" is no further from "address" than "adress" is.
+std::string without_doubled_letters(std::string word) {
+  word.erase(
+      std::unique(word.begin(), word.end(), [](char a, char b) { return a == b && a >= 'a' && a <= 'z'; }),
+      word.end());
+  return word;
+}
+
 }  // namespace
 
 unsigned edit_distance(std::string_view a, std::string_view b) {
@@ -87,12 +96,16 @@ std::vector<std::string_view> all_nearest(std::string_view word,
   if (word.size() > longest) return {};
   const std::string given = lower(word);
   std::vector<std::string_view> best;
-  unsigned least = static_cast<unsigned>(1 + word.size() / 4);
+  unsigned least = std::max(1U, static_cast<unsigned>(word.size() / 4));
   for (const std::string_view candidate : candidates) {
-    if (candidate.size() > word.size() + least) continue;
+    if (candidate.size() > word.size() + least + 1) continue;
     const std::string known = lower(candidate);
-    const unsigned distance = edit_distance(given, known);
-    if (distance > least || distance >= candidate.size() || are_opposites(given, known)) continue;
+    const unsigned distance =
+        std::min(edit_distance(given, known),
+                 1 + edit_distance(without_doubled_letters(given), without_doubled_letters(known)));
+    if (distance > least || distance >= std::min(word.size(), candidate.size()) ||
+        are_opposites(given, known))
+      continue;
     if (distance < least) best.clear();
     least = distance;
     best.push_back(candidate);
@@ -101,10 +114,7 @@ std::vector<std::string_view> all_nearest(std::string_view word,
 }
 
 bool is_slip(std::string_view word, std::string_view candidate) {
-  const auto most = std::max<std::size_t>(1, word.size() / 4);
-  if (all_nearest(word, {candidate}).empty()) return false;
-  const unsigned distance = edit_distance(lower(word), lower(candidate));
-  return distance <= most && distance < word.size();
+  return !all_nearest(word, {candidate}).empty();
 }
 
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates) {
@@ -124,6 +134,11 @@ std::string nearest_or(std::string_view word, const std::vector<std::string_view
 
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates) {
   return nearest_or(word, candidates, fmt::format("write one of {}", fmt::join(candidates, ", ")));
+}
+
+std::string or_update(std::string otherwise) {
+  return fmt::format("{}, or update coupler (this is {}, and a newer one may know it)", std::move(otherwise),
+                     version);
 }
 
 }  // namespace coupler

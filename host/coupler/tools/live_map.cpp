@@ -42,7 +42,7 @@ tl::expected<MapPtr, Failure> map_in(const Fetched& served, const Connection& wh
                                          where.unit)));
   if (!*served) return fail(bad_input, "a foreign coupler, which serves no map", give_a_file);
   auto map = host::load_node_map((*served)->text, (*served)->head, load_served_map);
-  if (!map) return fail(bad_input, "the node's map cannot be used: " + map.error(), give_a_file);
+  if (!map) return fail(bad_input, "the node's map cannot be used: " + map.error(), "");
   return *map;
 }
 

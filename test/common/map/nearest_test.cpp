@@ -18,6 +18,8 @@ TEST(Nearest, Edits_are_insertions_deletions_replacements_and_swaps) {
 
 TEST(Nearest, A_typing_mistake_finds_the_word_that_was_meant) {
   EXPECT_EQ(nearest("adress", {"name", "address", "port"}), "address");
+  EXPECT_EQ(nearest("adres", {"name", "address", "port"}), "address") << "doubled letters count once";
+  EXPECT_EQ(nearest("valve_1", {"valve_111"}), "") << "doubled digits do";
   EXPECT_EQ(nearest("UNIT", {"INT", "UINT", "unit"}), "unit") << "case does not count";
   EXPECT_EQ(nearest("registers_read_seperation_gap", {"registers_read_separation_gap"}),
             "registers_read_separation_gap");
@@ -55,6 +57,11 @@ TEST(Nearest, Nothing_is_suggested_for_another_word) {
   EXPECT_EQ(nearest("colour", {"name", "address", "port"}), "");
   EXPECT_EQ(nearest("x", {"to"}), "");
   EXPECT_EQ(nearest(std::string(100000, 'a'), {"name"}), "");
+  EXPECT_EQ(nearest("note", {"rate"}), "") << "two of four letters";
+  EXPECT_EQ(nearest("latch", {"latched"}), "");
+  EXPECT_EQ(nearest("counter", {"count"}), "");
+  EXPECT_EQ(nearest("scale", {"safe"}), "");
+  EXPECT_EQ(nearest("invalid", {"initial"}), "");
   EXPECT_EQ(suggestion("colour", {"to", "from"}), "write one of to, from");
   EXPECT_EQ(suggestion("form", {"to", "from"}), "did you mean 'from'?");
 }

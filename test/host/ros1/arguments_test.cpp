@@ -90,8 +90,9 @@ TEST(Arguments, A_misspelt_one_is_told_with_the_nearest) {
   const Arguments result = parse({"_pol:=subscribed"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(result.text, "_pol:=subscribed: there is no such setting; did you mean 'poll'?\n");
-  EXPECT_THAT(parse({"_speed:=1"}).text,
-              HasSubstr("_speed:=1: there is no such setting; coupler_driver --help"));
+  EXPECT_THAT(
+      parse({"_speed:=1"}).text,
+      HasSubstr("_speed:=1: there is no such setting; see coupler_driver --help, or update coupler ("));
 }
 
 TEST(Arguments, A_value_out_of_range_is_a_wrong_call) {

@@ -106,7 +106,9 @@ class TheCall(Cli):
         self.assertIn("'frobnicate' is not a command", self.refused("frobnicate", "a", "b"))
 
     def test_with_an_unknown_option_names_it(self):
-        self.assertIn("--nope", self.refused("check", "map.yaml", "--nope"))
+        said = self.refused("check", "map.yaml", "--nope")
+        self.assertIn("--nope", said)
+        self.assertRegex(said, r"\(this is coupler \d+\.\d+\.\d+, and a newer one may know it\)")
 
     def test_without_a_map_is_wrong(self):
         self.assertIn("MAP", self.refused("check"))

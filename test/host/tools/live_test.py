@@ -8,6 +8,7 @@ import sys
 import tempfile
 import threading
 import unittest
+import zlib
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
@@ -44,6 +45,31 @@ class Foreign:
                     connection.sendall(head + self._pdu)
 
 
+class Relay:
+    """Stands before a node on `port`, and replaces the first by the second of each pair in what it says."""
+
+    def __init__(self, port, pairs):
+        self._node, self._pairs = port, pairs
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self.port = self._listener.getsockname()[1]
+        threading.Thread(target=self._serve, daemon=True).start()
+
+    def _serve(self):
+        with self._listener:
+            client, _ = self._listener.accept()
+            with client, socket.create_connection(("127.0.0.1", self._node)) as node:
+                while request := client.recv(260):
+                    node.sendall(request)
+                    reply = node.recv(260)
+                    for old, new in self._pairs:
+                        reply = reply.replace(old, new)
+                    client.sendall(reply)
+
+
+def crc(data):
+    return zlib.crc32(data).to_bytes(4, "big")
+
+
 class Live(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -77,6 +103,15 @@ class ANode(Live):
         done = self.coupler("check", "--json", node)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(json.loads(done.stdout), {**of_file, "file": node})
+
+    def test_that_is_newer_asks_for_an_update_of_this_side(self):
+        known = MAP.replace("lamp: 0", "door: {address: 1, access: read}")
+        newer = known.replace("access: read", "access: rest")
+        port = int(self.node(known).split(":")[2].split("/")[0])
+        pairs = [[of(text.encode()) for text in (known, newer)] for of in (bytes, crc)]
+        said = self.refused(1, f"tcp://127.0.0.1:{Relay(port, pairs).port}/7")
+        self.assertRegex(said, r"it does not load in coupler \d+\.\d+\.\d+; if the node has a newer one, update this one\n"
+                         r".*'access' must be one of read, write, read_write, not 'rest'\n")
 
     def test_is_planned(self):
         done = self.coupler("plan", "--json", self.node())

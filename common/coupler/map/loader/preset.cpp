@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "coupler/codec/type_name.hpp"
 #include "coupler/map/loader/document.hpp"
@@ -118,9 +119,12 @@ std::optional<Preset> read_preset(const Entry& root, const Context& context) {
     if (file.name == entry->text) return parse_preset(file).value();
   }
   const std::string_view of_model = preset_of_model(entry->text);
-  context.problems.error(entry->at, fmt::format("no preset is called {}", shown(*entry)),
-                         of_model.empty() ? suggestion(entry->text, names)
-                                          : fmt::format("write '{}', which covers this model", of_model));
+  context.problems.error(
+      entry->at, fmt::format("no preset is called {}", shown(*entry)),
+      context.unless_served(
+          of_model.empty() ? nearest_or(entry->text, names,
+                                        or_update(fmt::format("write one of {}", fmt::join(names, ", "))))
+                           : fmt::format("write '{}', which covers this model", of_model)));
   return std::nullopt;
 }
 

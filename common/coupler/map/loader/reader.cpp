@@ -224,9 +224,11 @@ std::string_view Reader::chosen_word(std::string_view key) const {
   context_.problems.error(
       entry->at,
       fmt::format("'{}' must be one of {}, not {}", known.name, fmt::join(choices, ", "), shown(*entry)),
-      meant.empty() ? nearest_or(given, choices,
-                                 fmt::format("write one of them, as in '{}: {}'", known.name, known.example))
-                    : std::string(meant));
+      context_.unless_served(meant.empty()
+                                 ? nearest_or(given, choices,
+                                              or_update(fmt::format("write one of them, as in '{}: {}'",
+                                                                    known.name, known.example)))
+                                 : std::string(meant)));
   return {};
 }
 

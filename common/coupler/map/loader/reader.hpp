@@ -29,6 +29,8 @@ struct Context {
   bool foreign = false;
   std::string_view folder{};  ///< of the file, where paths in it begin
 
+  /// Nothing can be mended in a served map: load_node_map() says what to do.
+  std::string unless_served(std::string remedy) const { return served ? std::string() : std::move(remedy); }
   void problem(bool is_warning, Position at, std::string what, std::string remedy) const {
     if (is_warning)
       problems.warning(at, what + ", ignored", std::move(remedy));

@@ -131,7 +131,8 @@ std::string remedy(std::string_view word) {
   for (std::string text : {remedy_for_size(word), remedy_for_order(word), remedy_for_what_is_no_type(word),
                            remedy_for_near_name(word, number), remedy_for_width(number)})
     if (!text.empty()) return text;
-  return "write the one that the device's manual means; 'INT' has 16 bits, 'DINT' and 'REAL' have 32";
+  return or_update(
+      "write the one that the device's manual means ('INT' has 16 bits, 'DINT' and 'REAL' have 32)");
 }
 
 }  // namespace
@@ -153,7 +154,7 @@ void read_type(const Reader& reader, Type& type, const Context& context) {
         fmt::format("'type' must be one of {}, not {}",
                     fmt::join(words(find_key("type", Section::input_register)->choices), ", "),
                     shown(*entry)),
-        remedy(word));
+        context.unless_served(remedy(word)));
   }
 }
 

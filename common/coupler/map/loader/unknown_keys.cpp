@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a reader says of a key that its section does not have.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "coupler/codec/type_name.hpp"
 #include "coupler/map/loader/reader.hpp"
@@ -66,7 +67,7 @@ void Reader::misplaced(const Entry& entry, Section elsewhere) const {
                        codec::parse_type(entry.text) == codec::Type::BOOL;
   context_.problem(context_.served || is_true, entry.key_at,
                    fmt::format("'{}' does not apply to {}", entry.key, describe(section_)),
-                   std::move(remedy));
+                   context_.unless_served(std::move(remedy)));
 }
 
 void Reader::unknown(const Entry& entry) const {
@@ -78,7 +79,7 @@ void Reader::unknown(const Entry& entry) const {
   if (elsewhere != Section::none) return misplaced(entry, elsewhere);
   const auto here = key_names(section_);
   const std::string_view near = nearest(entry.key, here);
-  const bool slip = is_slip(entry.key, near);
+  const bool slip = !near.empty();
   const Key* other = slip ? nullptr : slip_of_another_section(entry.key);
   const Synonym* synonym = slip ? nullptr : find_synonym(entry.key, section_);
   const bool is_point = section_ == Section::mapping && !slip && synonym == nullptr &&
@@ -93,11 +94,11 @@ void Reader::unknown(const Entry& entry) const {
   else if (other != nullptr)
     remedy = fmt::format("did you mean '{}', a key of {}?", other->name, places(sections_with(other->name)));
   else
-    remedy = suggestion(entry.key, here);
+    remedy = or_update(fmt::format("write one of {}; otherwise remove it", fmt::join(here, ", ")));
   const bool ours = slip || is_point || other != nullptr || (synonym != nullptr && !synonym->harmless);
   context_.problem(context_.served || (context_.foreign && !ours), entry.key_at,
                    fmt::format("unknown key {} of {}", shown(entry.key), describe(section_)),
-                   std::move(remedy));
+                   context_.unless_served(std::move(remedy)));
 }
 
 }  // namespace coupler::loader

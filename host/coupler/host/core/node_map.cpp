@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/version.hpp"
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/modbus/pdu.hpp"
 
@@ -107,7 +108,8 @@ tl::expected<MapPtr, std::string> load_node_map(const std::string& text, const i
         fmt::format("checksum {:08x} instead of {:08x}; restart the device", crc32(text), head.map_crc));
   LoadResult result = load(text, "the device's map");
   if (result.map) return result.map;
-  std::string why = "it does not load";
+  std::string why =
+      fmt::format("it does not load in coupler {}; if the node has a newer one, update this one", version);
   for (const Diagnostic& diagnostic : shortened(std::move(result.diagnostics)))
     why += "\n" + to_string(diagnostic);
   return tl::make_unexpected(why);

@@ -19,7 +19,7 @@ const SettingKey* find(std::string_view name) {
 }
 
 std::string nearest_setting(std::string_view name) {
-  return nearest_or(name, setting_names(), "coupler_driver --help shows them");
+  return nearest_or(name, setting_names(), or_update("see coupler_driver --help"));
 }
 
 void apply(const Settings& settings, Tls& tls) {

@@ -83,12 +83,10 @@ void report_unknown(const Cell& heading, const Column& column, Problems& problem
   const std::string_view key = column.key;
   const auto names = column_names();
   const std::string_view near = nearest(key, names);
-  const bool slip =
-      std::any_of(names.begin(), names.end(), [&](const auto name) { return is_slip(key, name); });
   if (column.reading == Reading::left_out)
     problems.warning(heading.at, fmt::format("the column {} is not carried over", shown(heading.text)),
                      std::string(remedy_for_left_out(column.key)));
-  else if (slip)
+  else if (!near.empty())
     problems.error(heading.at, fmt::format("a point has no key {}", shown(heading.text)),
                    fmt::format("did you mean '{}'? If not, give the column another heading", near));
   else

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "coupler/base/version.hpp"
 #include "test/common/map/loader/loaded.hpp"
 #include "test/support/paths.hpp"
 
@@ -30,7 +31,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 /// "# expect: LINE:COLUMN: …" or "// expect: …", as the loader would say it of a file called "map"; of its
 /// lock
-/// "# expect: .lock:LINE:COLUMN: …".
+/// "# expect: .lock:LINE:COLUMN: …". VERSION stands for that of coupler.
 std::string expectations(const std::string& path) {
   std::ifstream in(path);
   std::string result;
@@ -40,7 +41,7 @@ std::string expectations(const std::string& path) {
     if (at == 1 || at == 2)
       result += (line[at + mark.size()] == '.' ? "map" : "map:") + line.substr(at + mark.size()) + '\n';
   }
-  return result;
+  return replaced(result, "VERSION", std::string(version));
 }
 
 class BadMap : public testing::TestWithParam<std::string> {};

@@ -124,6 +124,7 @@ TEST(Load, A_node_may_serve_a_map_with_keys_of_a_later_version) {
   EXPECT_EQ(served.map->map().points[0].name, "valve");
   ASSERT_EQ(served.diagnostics.size(), 3U);
   EXPECT_EQ(served.diagnostics[0].what, "unknown key 'mood' of the map, ignored");
+  for (const Diagnostic& diagnostic : served.diagnostics) EXPECT_EQ(diagnostic.remedy, "");
   EXPECT_FALSE(load_served_map("name: press\nmapping: {coils: {valve: 70000}}\n", "map.yaml").map);
 }
 
