@@ -94,6 +94,12 @@ std::optional<Line> first_without_colon(std::string_view text, const Line& here)
 
 }  // namespace
 
+SyntaxError text_behind(char quote, std::string_view text, std::size_t offset) {
+  return {position_of(text, offset), "text follows the closing quote",
+          quote == '"' ? "of a quote in double quotes write '\\\"', or use single quotes"
+                       : "of an apostrophe in single quotes write two, or use double quotes"};
+}
+
 std::optional<SyntaxError> explain_lines(std::string_view text, std::size_t offset) {
   const Line here = line_at(text, offset);
   if (const auto slip = colon_slip(here.text))
@@ -116,8 +122,9 @@ std::optional<SyntaxError> explain_stranger(std::string_view text, std::size_t o
   const Position at = position_of(text, offset);
   if (offset > here.begin && text[offset] == ',')
     return SyntaxError{at, "',' does not belong here", "remove it: entries in lines of their own need none"};
-  if (offset > here.begin && (text[offset - 1] == '\'' || text[offset - 1] == '"'))
-    return SyntaxError{at, "text follows the closing quote", remedy_for_quotes};
+  const char previous = text[text.find_last_not_of(' ', offset == 0 ? 0 : offset - 1)];
+  if (offset > here.begin && (previous == '\'' || previous == '"'))
+    return text_behind(previous, text, offset);
   if (offset > here.begin)
     return SyntaxError{at, "the value has ended before this", "write one 'key: value' a line"};
   const auto before = above(text, here);

@@ -9,7 +9,8 @@
 
 namespace coupler::loader {
 
-constexpr const char* remedy_for_quotes = "of an apostrophe in single quotes write two, or use double quotes";
+/// The text at `offset` follows a quote that was not meant to close one.
+SyntaxError text_behind(char quote, std::string_view text, std::size_t offset);
 
 /// Returns what is wrong with the lines of a YAML text that a parser rejects at `offset`, outside brackets.
 /// The mistake may be in a line above: without its ':' that line is a text, which goes on below it.

@@ -120,6 +120,14 @@ std::size_t indentation(std::string_view text, std::size_t offset) {
   return std::min(text.find_first_not_of(' ', start), text.size()) - start;
 }
 
+/// Only blanks stand between, and no entry begins there, whose ',' would be missing.
+bool is_text_behind_quote(std::string_view text, std::size_t offset, std::size_t quote_end) {
+  const std::size_t next = text.find_first_not_of(" \t", quote_end);
+  const std::size_t entry_end = text.find_first_of(":,{}[]\n", offset);
+  return quote_end == offset ||
+         (next == offset && (entry_end == std::string_view::npos || text[entry_end] != ':'));
+}
+
 /// Returns what is wrong before a place in brackets where the parser expected ',' or a closing bracket.
 std::optional<SyntaxError> explain_in_brackets(std::string_view text, std::size_t offset,
                                                const Before& before) {
@@ -128,9 +136,9 @@ std::optional<SyntaxError> explain_in_brackets(std::string_view text, std::size_
   if (ends_here && position_of(text, before.quote).line < line)
     return SyntaxError{position_of(text, before.quote), "the quote is not closed in its line",
                        "close it where the text ends"};
-  if (before.quote_end == offset && offset > 0)
-    return SyntaxError{position_of(text, offset), "text follows the closing quote", remedy_for_quotes};
-  if (before.open.empty()) return std::nullopt;
+  if (ends_here && is_text_behind_quote(text, offset, before.quote_end))
+    return text_behind(text[before.quote], text, offset);
+  if (before.open.empty() || is_json(text)) return std::nullopt;
   const std::size_t open = before.open.back();
   if (position_of(text, open).line < line && indentation(text, offset) <= indentation(text, open))
     return never_closed(text, open);
@@ -151,6 +159,7 @@ std::optional<SyntaxError> explain_by_text(std::string_view text, std::size_t of
   const auto says = [&](std::string_view begin) { return message.substr(0, begin.size()) == begin; };
   if (says("end of map flow") || says("end of sequence flow"))
     return explain_in_brackets(text, offset, before);
+  if (is_json(text)) return std::nullopt;
   if (says("illegal flow end") && !before.open.empty() && text[offset] != closing(text[before.open.back()]))
     return wrong_bracket(text, offset, before.open.back());
   if (!before.open.empty()) return std::nullopt;
@@ -176,8 +185,7 @@ SyntaxError explain(std::string_view text, std::size_t offset, std::string_view 
   const Position at = position_of(text, offset);
   if (!is_json(text) && indented_by_tab(text, offset))
     return {at, "the line is indented by a tab", "indent with blanks"};
-  if (!is_json(text))
-    if (auto better = explain_by_text(text, offset, message, before)) return *better;
+  if (auto better = explain_by_text(text, offset, message, before)) return *better;
   for (const Explanation& known : explanations)
     if (message.substr(0, known.message.size()) == known.message)
       return {at, std::string(known.what), std::string(known.remedy)};
