@@ -158,6 +158,26 @@ Json order_rule(Type type) {
   return only("order", {{"enum", std::move(orders)}});
 }
 
+/// `bits` in ascending order, no more than the type has. One rule for each first bit: a schema compares no
+/// numbers.
+Json ends_in(int width) {
+  Rules rules;
+  for (int first = 0; first < 16; ++first) {
+    const Json begins{{"items", {{{"const", first}}}}};
+    const Json last{{"minimum", first + 1}, {"maximum", first + width - 1}};
+    rules.push_back(when(begins, {{"items", {Json::object(), last}}}));
+  }
+  return all_of(std::move(rules));
+}
+
+/// `ignore_byteorder` and `order` of a STRING say the same.
+Json text_order_rule() {
+  const Json same{{"if", only("ignore_byteorder", not_true())},
+                  {"then", only("order", is("BA"))},
+                  {"else", only("order", is("AB"))}};
+  return when(has("ignore_byteorder"), same);
+}
+
 /// Returns the rule about the keys that a type does not have.
 Json others_rule(Type type) {
   Words refused;
@@ -334,6 +354,9 @@ Json definitions() {
           with_values({{"anyOf", {values_of(each.value), reference("name_of_a_value")}}});
     Rules rules{order_rule(each.value), others_rule(each.value), values_rule(each.value)};
     if (codec::is_scalable(each.value)) rules.push_back(bounds_rule(each.value));
+    if (each.value == Type::STRING) rules.push_back(text_order_rule());
+    if (loader::applies_to(*loader::find_key("bits", Section::holding_register), each.word))
+      rules.push_back(only("bits", ends_in(static_cast<int>(codec::width(each.value)))));
     all["rules_of_" + name_of(each.value)] = all_of(std::move(rules));
   }
   return unsuggested(std::move(all));

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The schema of maps as python3-jsonschema understands it: good maps pass, bad ones fail if a schema can see why.
 COUPLER is the program, SOURCE_DIR the tree. Exit status 77: a package is missing."""
+import itertools
 import json
 import os
 import re
@@ -63,7 +64,7 @@ UNSEEN_MISTAKES = {
 TYPES = {"BOOL": "bit: 3", "BYTE": "offset: low", "SINT": "offset: low", "USINT": "offset: high", "CHAR": "offset: high",
          "STRING": "length: 6", **{name: "" for name in "WORD DWORD LWORD INT DINT LINT UINT UDINT ULINT REAL LREAL".split()}}
 BITS_OF_A_WORD = f"[{', '.join(['on'] * 16)}]"
-KEYS = """bit: 3|bits: [8, 11]|bits: [0, 14]|bits: [3, 3]|bits: [0, 15]|bits: [8, 16]|offset: low|length: 6|encoding: ascii|ignore_byteorder: true|order: AB|order: CDAB|scale: 0|scale: 0.1|scale: 1|scale: {gain: 1}|
+KEYS = """bit: 3|bits: [8, 11]|bits: [0, 14]|bits: [3, 3]|bits: [0, 15]|bits: [8, 16]|offset: low|length: 6|encoding: ascii|ignore_byteorder: true|order: AB|order: BA|order: CDAB|scale: 0|scale: 0.1|scale: 1|scale: {gain: 1}|
     scale: {gain: 0}|scale: {gain: 2, offset: -1}|scale: {offset: 5}|min: 1|min: 0.5|min: 40000|min: -1|max: 1e39|
     values: {0: idle, 1: run}|initial: 1|initial: 0.5|initial: -1|initial: 300|initial: 70000|initial: 5e9|
     initial: on|initial: true|initial: "on"|initial: "1"|initial: idle|initial: [1, 0]|initial: [on, off]|
@@ -80,7 +81,7 @@ KEYS = """bit: 3|bits: [8, 11]|bits: [0, 14]|bits: [3, 3]|bits: [0, 15]|bits: [8
     units: true|description: 5|invalid: 255|invalid: [0x7F, [3, 9]]|invalid: []|invalid: [[1, 2, 3]]|fault_below: 5|
     fault_above: on|scale: {raw: [0, 5], value: [0, 1]}|scale: {raw: [0, 5]}|scale: {raw: [0, 5], value: [0, 1], gain: 2}|
     scale: {raw: [5, 5], value: [0, 1]}|scale: {raw: 5, value: [0, 1]}""" % ((BITS_OF_A_WORD,) * 3)
-CONTEXTS = ["count: 2", "access: read", "access: write", "scale: 0.5", "values: {0: idle, 100: run}", "publish: on_change",
+CONTEXTS = ["count: 2", "ignore_byteorder: yes", "ignore_byteorder: off", "access: read", "access: write", "scale: 0.5", "values: {0: idle, 100: run}", "publish: on_change",
             "line: GPIO7", "pulse: 1s", "iio: {device: d, channel: c}"]
 DIFFERENT_TYPES = {"BOOL", "SINT", "WORD", "INT", "REAL", "STRING"}
 # What no schema can say: it compares no numbers, adds none, and counts no list or text by another key's number.
@@ -91,6 +92,9 @@ NO_NAME_OF_A_VALUE = "must be a number, not"  # beside `values`
 
 def points_to_compare():
     """(table, the point's keys)"""
+    for name in ("USINT", "UINT"):
+        for first, last in itertools.product(range(17), repeat=2):
+            yield "holding_registers", f"address: 0, type: {name}, bits: [{first}, {last}]"
     for table in ("coils", "discrete_inputs", "input_registers", "holding_registers"):
         types = {f"type: {name}, {own}": name for name, own in TYPES.items()} if "registers" in table else {"": ""}
         for head, name in types.items():
