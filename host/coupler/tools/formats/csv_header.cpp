@@ -65,6 +65,15 @@ void tell_units_from_slaves(std::vector<Column>& columns, const Row& header) {
     }
 }
 
+/// "Exponent" beside "Factor" is another factor.
+void tell_exponents_from_factors(std::vector<Column>& columns) {
+  const bool has_factor = std::any_of(columns.begin(), columns.end(), [](const Column& column) {
+    return column.key == "scale" && (column.reading == Reading::plain || column.reading == Reading::divisor);
+  });
+  for (Column& column : columns)
+    if (has_factor && column.reading == Reading::exponent) column.key = "exponent";
+}
+
 bool is_known(const Column& column) {
   if (column.reading == Reading::left_out) return false;
   if (column.reading != Reading::plain) return true;
@@ -144,6 +153,7 @@ std::vector<Column> read_header(const std::vector<Row>& rows, const ImportOption
   columns.reserve(header.size());
   for (const Cell& cell : header) columns.push_back(column_of(cell.text, options));
   tell_units_from_slaves(columns, header);
+  tell_exponents_from_factors(columns);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     Column& column = columns[i];
     const Cell& cell = header[i];

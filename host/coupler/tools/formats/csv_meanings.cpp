@@ -22,9 +22,9 @@ using loader::shown;
 /// Empties the cells "-" and "N/A" in the columns of numbers.
 void empty_cells_that_say_nothing(const std::vector<Column>& columns, std::vector<Row>& rows) {
   constexpr std::string_view of_numbers[] = {
-      "address", "bit",     "count",    "length",       "scale",      "offset",
-      "min",     "max",     "range",    "order",        "registers",  "address_offset",
-      "unit",    "raw_low", "raw_high", "scale_offset", "scaled_low", "scaled_high"};
+      "address", "bit",      "count",        "length",     "scale",      "exponent",       "offset",
+      "min",     "max",      "range",        "order",      "registers",  "address_offset", "unit",
+      "raw_low", "raw_high", "scale_offset", "scaled_low", "scaled_high"};
   for (const std::string_view key : of_numbers) {
     const std::size_t i = find_column(columns, key);
     if (i == columns.size()) continue;

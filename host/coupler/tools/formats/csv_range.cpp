@@ -25,7 +25,7 @@ std::optional<Ends> ends_of(const RowView& row, const RowPoint& point, const Cel
   };
   if (!ends)
     return leave_out("it is not two numbers",
-                     "write it as in 0..100; numbers with names are 'values' in the map");
+                     "write it as in 0..100, or as in 0=off;1=on where a number has names for its values");
   const bool is_open =
       ends->comma_may_be_of_thousands || (row.separator == ';' && ends->point_may_be_of_thousands);
   if (is_open) {
@@ -42,6 +42,20 @@ std::optional<Ends> ends_of(const RowView& row, const RowPoint& point, const Cel
   if (point.is_number()) return ends;
   if (ends->low == "0" && ends->high == "1") return std::nullopt;
   return leave_out("the type has none", "no action is needed if the device refuses other values");
+}
+
+/// "0=Off;1=On" becomes the names of the values, where the point can have these.
+bool add_names(const Cell& cell, RowPoint& point) {
+  const auto names = read_names(cell.text);
+  const bool is_whole = point.is_number() && point.type.type && !codec::is_float(*point.type.type);
+  const Entry* scale = loader::child(point.entry, "scale");
+  const bool is_scaled = scale != nullptr && loader::parse_number(scale->text) != 1.0;
+  if (names.empty() || !is_whole || is_scaled || loader::child(point.entry, "values") != nullptr)
+    return false;
+  Entry values = section("values", cell.at);
+  for (const auto& [number, name] : names) values.children.push_back(scalar(number, name, cell.at));
+  set(point.entry, std::move(values));
+  return true;
 }
 
 }  // namespace
@@ -62,7 +76,7 @@ bool refuse_thousands(const RowView& row, const Cell& cell) {
 
 void add_range(const RowView& row, RowPoint& point) {
   const Cell* cell = row.cell("range");
-  if (cell == nullptr) return;
+  if (cell == nullptr || add_names(*cell, point)) return;
   const auto ends = ends_of(row, point, *cell);
   if (!ends) return;
   for (const auto& [key, text] : {std::pair("min", ends->low), std::pair("max", ends->high)}) {

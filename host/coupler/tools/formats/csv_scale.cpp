@@ -34,6 +34,20 @@ bool may_be_scaled(const RowPoint& point) {
   return point.is_number() || is_word;
 }
 
+/// The column beside that of the factor.
+void add_exponent(const RowView& row, RowPoint& point) {
+  const Cell* cell = row.cell("exponent");
+  if (cell == nullptr) return;
+  const auto power = loader::parse_number(factor_text(cell->text, Reading::exponent));
+  const Entry* scale = loader::child(point.entry, "scale");
+  const auto factor = scale != nullptr ? loader::parse_number(scale->text) : 1.0;
+  if (!power)
+    row.problems.error(cell->at, fmt::format("{} is not an exponent of ten", shown(cell->text)),
+                       "write a whole number from -30 to 30, or nothing");
+  else if (factor)  // the loader tells that the other is none
+    set(point.entry, scalar("scale", fmt::format("{:.15g}", *factor * *power), cell->at));
+}
+
 /// A factor of 1 beside a text, a bit or a word says that there is none.
 void drop_factor_of_1(RowPoint& point) {
   const Entry* scale = loader::child(point.entry, "scale");
@@ -243,6 +257,7 @@ bool RowPoint::is_number() const {
 }
 
 void add_scale(const RowView& row, RowPoint& point) {
+  add_exponent(row, point);
   drop_factor_of_1(point);
   add_line(row, point);
   split_units(row, point);

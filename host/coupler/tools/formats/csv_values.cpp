@@ -27,6 +27,11 @@ std::string_view take_unit(std::string_view& text) {
   return unit;
 }
 
+std::string_view between_blanks(std::string_view text) {
+  drop_blanks(text);
+  return text.substr(0, text.find_last_not_of(' ') + 1);
+}
+
 bool take_separator(std::string_view& text) {
   for (const std::string_view word : {"...", "..", "\u2026", "to ", "bis ", "\u00E0 ", "-", "\u2013",
                                       "\u2014", "~", ";", ",", ":", "\u2192"})
@@ -97,6 +102,27 @@ std::optional<Ends> read_range(std::string_view text) {
   ends.low = *low;
   ends.high = *high;
   return ends;
+}
+
+std::vector<NumberAndName> read_names(std::string_view text) {
+  std::vector<NumberAndName> names;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of(";,|/\n"), text.size());
+    std::string_view entry = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    drop_blanks(text);
+    const std::size_t sign = entry.find_first_of("=:");
+    if (sign == std::string_view::npos) return {};
+    const std::string_view number = between_blanks(entry.substr(0, sign));
+    const std::string_view name = between_blanks(entry.substr(sign + 1));
+    const bool is_name =
+        !name.empty() && is_letter(name[0]) && std::all_of(name.begin(), name.end(), [](char c) {
+          return is_letter(c) || (c >= '0' && c <= '9') || c == '_';
+        });
+    if (!loader::parse_integer(number) || !is_name) return {};
+    names.push_back({std::string(number), std::string(name)});
+  }
+  return names;
 }
 
 bool is_raw_range(const Ends& ends, codec::Type type) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "coupler/codec/format.hpp"
 #include "coupler/tools/formats/csv_headings.hpp"
@@ -28,6 +29,13 @@ struct Ends {
   bool point_may_be_of_thousands = false;  ///< "1.000"
 };
 std::optional<Ends> read_range(std::string_view text);
+
+struct NumberAndName {
+  std::string number;
+  std::string name;
+};
+/// Those of "0=Off;1=On"; empty if the text is something else, or `values` of a map cannot have some name.
+std::vector<NumberAndName> read_names(std::string_view text);
 
 /// All that the registers of the type can hold, which says nothing about the value.
 bool is_raw_range(const Ends& ends, codec::Type type);

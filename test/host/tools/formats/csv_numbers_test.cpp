@@ -9,6 +9,7 @@
 namespace coupler::test {
 namespace {
 
+using testing::AllOf;
 using testing::AnyOf;
 using testing::HasSubstr;
 using testing::Not;
@@ -195,15 +196,51 @@ TEST(CsvNumbers, A_range_that_a_map_does_not_have_is_left_out) {
     return made_of("table,name,address,type,Range\nhr,a,1,INT," + cell + "\n");
   };
   for (const char* cell :
-       {"100", "0/1", "0=Off;1=On", "> 0", "± 100", "low", "0..", "..5", "0 to", "on/off"}) {
+       {"100", "0/1", "0=Off;1=stand by", "0=", "> 0", "± 100", "low", "0..", "..5", "0 to", "on/off"}) {
     EXPECT_THAT(range(cell), HasSubstr("given:2:12: warning: the range '" + std::string(cell) +
                                        "' is not carried over: it is not two numbers"));
     EXPECT_THAT(range(cell), HasSubstr("a: {address: 1, type: INT}"));
   }
+  const std::string named = "0=Off;1=On";
+  EXPECT_THAT(
+      made_of("table,name,address,type,Range\nhr,a,1,REAL," + named + "\nhr,b,3,WORD," + named + "\n", {}),
+      AllOf(HasSubstr("given:2:13: warning"), HasSubstr("given:3:13: warning")));
+  EXPECT_THAT(made_of("table,name,address,type,Factor,Range\nhr,a,1,INT,0.1," + named + "\n"),
+              HasSubstr("is not carried over"));
   for (const char* cell : {"0 à 100", "von 0 bis 100", "from 0 to 100", "de 0 à 100"})
     EXPECT_THAT(range(cell), HasSubstr("min: 0, max: 100}")) << cell;
   EXPECT_THAT(made_of("table,name,address,type,Range\nhr,a,1,INT,0..5\n", {{"ignore", "Range"}}),
               HasSubstr("a: {address: 1, type: INT}"));
+}
+
+TEST(CsvNumbers, A_range_of_names_is_the_names_of_values) {
+  const std::string head = "table;name;address;type;Range\n";
+  for (const char* cell : {"\"0=Off;1=On\"", "0: Off, 1: On", "0 = Off | 1 = On", "0=Off/1=On;"}) {
+    const std::string made =
+        made_of(head + "hr;a;1;UINT;" + (cell[0] == '"' ? cell : '"' + std::string(cell) + '"') + "\n");
+    EXPECT_THAT(made, HasSubstr("a: {address: 1, type: UINT, values: {0: Off, 1: On}}")) << cell;
+    EXPECT_THAT(made, Not(HasSubstr("warning"))) << cell;
+  }
+  EXPECT_THAT(made_of("table;name;address;type;Factor;Range\nhr;a;1;UINT;1;0=Off\n"),
+              HasSubstr("values: {0: Off}"));
+}
+
+TEST(CsvNumbers, An_exponent_beside_a_factor_is_another_factor) {
+  const std::string rows =
+      "hr,a,1,INT,5,-2\nhr,b,2,INT,3,\nhr,c,3,INT,,-1\nhr,d,4,INT,3,-1\nhr,e,5,INT,7,0\n";
+  const std::string made = made_of("table,name,address,type,Factor,Exponent\n" + rows);
+  for (const char* line : {"a: {address: 1, type: INT, scale: 0.05}", "b: {address: 2, type: INT, scale: 3}",
+                           "c: {address: 3, type: INT, scale: 0.1}", "d: {address: 4, type: INT, scale: 0.3}",
+                           "e: {address: 5, type: INT, scale: 7}"})
+    EXPECT_THAT(made, HasSubstr(line));
+  EXPECT_THAT(made_of("table,name,address,type,Exponent,Divisor\nhr,a,1,INT,2,5\nhr,b,2,INT,-,5\n"),
+              AllOf(HasSubstr("scale: 20}"), HasSubstr("scale: 0.2}")));
+  EXPECT_THAT(
+      made_of("table,name,address,type,Factor,Exponent\nhr,a,1,INT,5,0.5\n"),
+      HasSubstr("given:2:14: error: '0.5' is not an exponent of ten; write a whole number from -30 to "
+                "30, or nothing"));
+  EXPECT_THAT(made_of("table,name,address,type,Gain,Exponent\nhr,a,1,INT,5,1\n"), HasSubstr("is there twice"))
+      << "a gain may divide";
 }
 
 TEST(CsvNumbers, A_factor_of_1_beside_what_has_none_is_no_scale) {
