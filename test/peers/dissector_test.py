@@ -39,6 +39,7 @@ def read(function, address, count):
 LONGS = (struct.pack(">q", -2**63 + 1) + swap_words(struct.pack(">Q", 2**64 - 2)) +
          swap_bytes(struct.pack(">d", 1.0e-300)) + swap_words(swap_bytes(struct.pack(">q", 81985529216486895))))
 TEXTS = swap_bytes(b"Anlage\0\0") + b"K\xfchler"
+BROKEN = swap_bytes(b"K\xfc\xc3\xa4\xe2\x82\xff\0")  # UTF-8 is the third and the fourth byte only
 # As `coupler dump` shows them: an exponent only for the very small and the very large.
 DOUBLES = {50.0: "50", -0.0: "-0", 1e-4: "0.0001", 1e-5: "1e-05", 0.1 + 0.2: "0.30000000000000004", -1234.5: "-1234.5",
            1e6: "1000000", -1e15: "-1000000000000000", 1e16: "1e+16", 123456789012345678.0: "1.2345678901234568e+17"}
@@ -72,6 +73,7 @@ TRAFFIC = [
     (write(26, PAIR), ["pair: [1.5, -2, 2.5] bar"], ["pair"]),
     (write(30, TEXTS), ['label: "Anlage"', 'plain: "Kühler"'], ["label", "plain"]),
     (read(3, 30, 7), ["label", "plain"], ['label: "Anlage"', 'plain: "Kühler"']),
+    (write(30, BROKEN), [r'label: "K\xfcä\xe2\x82\xff"'], ["label"]),
     *((write(18, swap_bytes(struct.pack(">d", number))), [f"long_badc: {text}"], ["long_badc"])
       for number, text in DOUBLES.items()),
     (b"\x06" + registers(41, 0xAB55), ["across: 0x0055", "field: 11"], ["across: 0x0055", "field: 11"]),

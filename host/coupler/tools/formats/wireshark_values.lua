@@ -67,6 +67,25 @@ local function utf8_of_latin1(byte)
   return string.char(192 + math.floor(byte / 64), 128 + byte % 64)
 end
 
+-- The characters of UTF-8 (RFC 3629).
+local characters = {
+  "^[\1-\127]", "^[\194-\223][\128-\191]", "^\224[\160-\191][\128-\191]", "^[\225-\236\238\239][\128-\191][\128-\191]",
+  "^\237[\128-\159][\128-\191]", "^\240[\144-\191][\128-\191][\128-\191]",
+  "^[\241-\243][\128-\191][\128-\191][\128-\191]", "^\244[\128-\143][\128-\191][\128-\191]",
+}
+
+-- Bytes that are not UTF-8 become "\xff", as in the clients.
+local function escaped(text)
+  local shown, at = {}, 1
+  while at <= #text do
+    local character
+    for _, form in ipairs(characters) do character = character or text:match(form, at) end
+    shown[#shown + 1] = character or string.format("\\x%02x", text:byte(at))
+    at = at + #(character or " ")
+  end
+  return table.concat(shown)
+end
+
 local function text_of(tvb, at, point)
   local text = {}
   for i = 0, point.length - 1 do
@@ -80,7 +99,7 @@ local function text_of(tvb, at, point)
       text[#text + 1] = string.char(byte)
     end
   end
-  return '"' .. table.concat(text) .. '"'
+  return '"' .. escaped(table.concat(text)) .. '"'
 end
 
 -- Values --------------------------------------------------------------------------------------------------------------
