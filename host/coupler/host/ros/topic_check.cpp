@@ -153,13 +153,13 @@ std::string TopicCheck::foreign(const Endpoint& other) const {
   const Point* const point = point_of(published_, other.topic);
   const auto write = std::find_if(written_.begin(), written_.end(),
                                   [point](const auto& topic) { return topic.second.point == point; });
-  return fmt::format(
-      "{}: node {} publishes here, too: its values are not the device's. {}emap this topic of {}",
-      other.topic, other.node,
+  const std::string remedy =
       write == written_.end()
-          ? "R"
-          : fmt::format("If they are to be written, publish at {}; otherwise r", write->first),
-      other.node);
+          ? fmt::format("Remap this topic of {}", other.node)
+          : fmt::format("If they are to be written, publish at {}; otherwise remap this topic of {}",
+                        write->first, other.node);
+  return fmt::format("{}: node {} publishes here, too: its values are not the device's. {}", other.topic,
+                     other.node, remedy);
 }
 
 /// A topic of a point that goes the other way only. False: it is none.
