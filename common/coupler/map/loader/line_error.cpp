@@ -122,11 +122,11 @@ std::optional<SyntaxError> explain_stranger(std::string_view text, std::size_t o
   const Position at = position_of(text, offset);
   if (offset > here.begin && text[offset] == ',')
     return SyntaxError{at, "',' does not belong here", "remove it: entries in lines of their own need none"};
-  const char previous = text[text.find_last_not_of(' ', offset == 0 ? 0 : offset - 1)];
-  if (offset > here.begin && (previous == '\'' || previous == '"'))
-    return text_behind(previous, text, offset);
-  if (offset > here.begin)
+  if (offset > here.begin) {
+    const char previous = text[text.find_last_not_of(' ', offset - 1)];
+    if (previous == '\'' || previous == '"') return text_behind(previous, text, offset);
     return SyntaxError{at, "the value has ended before this", "write one 'key: value' a line"};
+  }
   const auto before = above(text, here);
   if (here.is_list_item())
     return SyntaxError{at, "'- ' begins a list among entries", "leave the '- ' out: write 'key: value'"};
