@@ -23,12 +23,13 @@ class EveryType(testing.RosTest):
     def start(self, bytes_reversed, words_reversed):
         self.device = self.enterContext(self.peer())
         document = yaml.safe_load(MAP.read_text())
-        document.update(name=self.name, byteorder_reverse=bytes_reversed, wordorder_reverse=words_reversed)
+        document.update(name=self.name, byteorder_reverse=bytes_reversed, wordorder_reverse=words_reversed,
+                        timeout=f"{NO_TIMEOUT}s")
         self.points = iec.points(document)
         for index, point in enumerate(self.points):
             point.store(self.device, value_of(point, index, 0))
         path = process.write_map(yaml.safe_dump(document))
-        self.driver(f"_map:={path}", *self.device.way, f"_timeout:={NO_TIMEOUT}s").wait_for("connected")
+        self.driver(f"_map:={path}", *self.device.way).wait_for("connected")
 
     def is_read(self, bytes_reversed=False, words_reversed=False):
         """Each point, as a topic."""
