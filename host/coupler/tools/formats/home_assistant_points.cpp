@@ -2,8 +2,12 @@
 #include "coupler/tools/formats/home_assistant_points.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/tools/formats/map_tree.hpp"
@@ -31,6 +35,60 @@ std::optional<unsigned> octal(const Entry& given, Problems& problems) {
       fmt::format("{} is an octal number in Home Assistant's YAML, so it is read as {}", text, number),
       fmt::format("write {}, or the number that is meant without a zero before it", number));
   return number;
+}
+
+unsigned read_place(const FoundPoint& point) { return point.read_address.value_or(point.address); }
+
+constexpr std::string_view type_keys[] = {"type", "order", "length", "count", "offset", "bit"};
+
+bool is_type_key(std::string_view key) {
+  return std::find(std::begin(type_keys), std::end(type_keys), key) != std::end(type_keys);
+}
+
+bool is_same(const Entry* a, const Entry* b) {
+  if (a == nullptr || b == nullptr) return a == b;
+  return a->text == b->text && a->children.size() == b->children.size() &&
+         std::equal(a->children.begin(), a->children.end(), b->children.begin(),
+                    [](const Entry& x, const Entry& y) { return x.key == y.key && is_same(&x, &y); });
+}
+
+/// The two read the same bits and make the same number of them.
+bool have_same_value(const FoundPoint& a, const FoundPoint& b) {
+  return a.use != PointUse::write && b.use != PointUse::write && read_place(a) == read_place(b) &&
+         a.size == b.size && a.mask == b.mask &&
+         std::all_of(std::begin(type_keys), std::end(type_keys), [&](std::string_view key) {
+           return is_same(loader::child(a.entry, key), loader::child(b.entry, key));
+         });
+}
+
+/// Gives the point that stays what it may have of the one that goes. Returns what the warning says of it.
+std::string merge(FoundPoint& stays, const FoundPoint& goes) {
+  std::vector<std::string> taken;
+  std::vector<std::string> lost;
+  const bool same_value = have_same_value(stays, goes);
+  const bool same_scale =
+      same_value && is_same(loader::child(stays.entry, "scale"), loader::child(goes.entry, "scale"));
+  for (const Entry& key : goes.entry.children) {
+    const Entry* other = loader::child(stays.entry, key.key);
+    if (is_type_key(key.key) || is_same(other, &key)) continue;
+    const bool is_free = other == nullptr && key.key != "scale";
+    const bool fits = key.key == "units" ? same_scale : same_value;  // units are of the scaled value
+    (is_free && fits ? taken : lost).push_back(fmt::format("'{}'", key.key));
+    if (is_free && fits) stays.entry.children.push_back(key);
+  }
+  if (same_value && !same_scale && loader::child(goes.entry, "scale") == nullptr)
+    lost.emplace_back("that it has no 'scale'");
+  if (!same_value && stays.use != PointUse::write) lost.emplace_back("its type or size");
+  const bool is_faster = goes.interval > 0 && (stays.interval == 0 || goes.interval < stays.interval);
+  if (is_faster && goes.use != PointUse::write && stays.use != PointUse::write) {
+    stays.interval = goes.interval;
+    taken.push_back(fmt::format("'scan_interval: {}'", goes.interval));
+  }
+  std::string text;
+  if (!taken.empty())
+    text += fmt::format("; {} takes over {}", shown(stays.entry.key), fmt::join(taken, ", "));
+  if (!lost.empty()) text += fmt::format("; lost: {}", fmt::join(lost, ", "));
+  return text;
 }
 
 }  // namespace
@@ -93,34 +151,47 @@ void Settings::report_rest() const {
                         "no action is needed if Home Assistant itself does it");
 }
 
-const UnitPoints::Owner* UnitPoints::owner_of(const Owners& owners, const FoundPoint& point,
-                                              unsigned address) {
+FoundPoint* UnitPoints::owner_of(const Owners& owners, const FoundPoint& point, unsigned address) {
   for (unsigned i = 0; i < point.size; ++i)
     if (const auto found = owners.find({point.table, address + i}); found != owners.end())
       for (const Owner& owner : found->second)
-        if ((owner.mask & point.mask) != 0) return &owner;
+        if ((owner.mask & point.mask) != 0) return &points_[owner.point];
   return nullptr;
 }
 
-void UnitPoints::claim(Owners& owners, const FoundPoint& point, unsigned address) {
+void UnitPoints::claim(Owners& owners, const FoundPoint& point, unsigned address) const {
   for (unsigned i = 0; i < point.size; ++i)
-    owners[{point.table, address + i}].push_back({point.mask, point.entry.key, point.entry.key_at.line});
+    owners[{point.table, address + i}].push_back({point.mask, points_.size()});
 }
 
 void UnitPoints::add(FoundPoint point, Problems& problems) {
-  const unsigned read_at = point.read_address.value_or(point.address);
-  if (std::max(point.address, read_at) + point.size > 65536) {
+  if (std::max(point.address, read_place(point)) + point.size > 65536)
     problems.error(point.entry.key_at,
                    fmt::format("{} does not end before address 65536", shown(point.entry.key)),
                    "give it a smaller address");
-    return;
-  }
-  const Owner* owner = point.use == PointUse::write ? nullptr : owner_of(read_, point, read_at);
+  else
+    added_.push_back(std::move(point));
+}
+
+void UnitPoints::settle(Problems& problems) {
+  const auto rank = [](const FoundPoint& point) {
+    const loader::Position at = point.entry.key_at;
+    return point.use == PointUse::read ? std::tuple(1, at.line, at.column) : std::tuple(0, 0, 0);
+  };
+  std::stable_sort(added_.begin(), added_.end(),
+                   [&](const FoundPoint& a, const FoundPoint& b) { return rank(a) < rank(b); });
+  for (FoundPoint& point : std::exchange(added_, {})) give_place(std::move(point), problems);
+}
+
+void UnitPoints::give_place(FoundPoint point, Problems& problems) {
+  const unsigned read_at = read_place(point);
+  FoundPoint* owner = point.use == PointUse::write ? nullptr : owner_of(read_, point, read_at);
   if (owner == nullptr && point.use != PointUse::read) owner = owner_of(written_, point, point.address);
   if (owner != nullptr) {
+    const int line = owner->entry.key_at.line;
     problems.warning(point.entry.key_at,
-                     fmt::format("{} is at the same place as {} in line {}, so it is left out",
-                                 shown(point.entry.key), shown(owner->name), owner->line),
+                     fmt::format("{} is at the same place as {} in line {}, so it is left out{}",
+                                 shown(point.entry.key), shown(owner->entry.key), line, merge(*owner, point)),
                      "a map has one point for a place; rename it or change its type in the map");
     return;
   }

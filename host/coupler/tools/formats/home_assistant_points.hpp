@@ -67,10 +67,14 @@ struct FoundPoint {
   unsigned interval = 0;        ///< seconds between two reads; 0: it is not read by itself
 };
 
-/// The points of one unit id. Where two entities share a place the first one has it.
+/// The points of one unit id. Where two entities share a place, the first that writes has it, or else the
+/// first in the file.
 class UnitPoints {
  public:
   void add(FoundPoint point, loader::Problems& problems);
+
+  /// Gives each point its place, once all are added.
+  void settle(loader::Problems& problems);
 
   /// Returns the place of its first unit id, or of its first entity.
   loader::Position at() const { return at_; }
@@ -84,16 +88,17 @@ class UnitPoints {
  private:
   struct Owner {
     std::uint16_t mask = 0;
-    std::string name;
-    int line = 0;
+    std::size_t point = 0;  ///< of points_
   };
   using Owners = std::map<std::pair<Table, unsigned>, std::vector<Owner>>;
 
-  static const Owner* owner_of(const Owners& owners, const FoundPoint& point, unsigned address);
-  static void claim(Owners& owners, const FoundPoint& point, unsigned address);
+  FoundPoint* owner_of(const Owners& owners, const FoundPoint& point, unsigned address);
+  void claim(Owners& owners, const FoundPoint& point, unsigned address) const;
+  void give_place(FoundPoint point, loader::Problems& problems);
 
   loader::Position at_;
-  std::vector<FoundPoint> points_;
+  std::vector<FoundPoint> added_;   ///< without a place
+  std::vector<FoundPoint> points_;  ///< with one
   Owners read_;
   Owners written_;
 };

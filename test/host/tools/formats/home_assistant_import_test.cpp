@@ -202,6 +202,35 @@ TEST(HomeAssistantImport, The_first_of_two_entities_has_the_place_and_what_write
       AllOf(HasSubstr("r: {address: 3, type: INT, access: read}"), HasSubstr("w: {address: 3, type: UINT,")));
 }
 
+TEST(HomeAssistantImport, Of_two_entities_that_only_read_the_first_in_the_file_has_the_place) {
+  const Imported imported = hub(R"(sensors: [{name: Probe, address: 2, input_type: input, nan_value: 0x7FFF,
+    scan_interval: 1}], climates: [{name: Chamber, address: 2, input_type: input, scale: 0.1,
+    target_temp_register: 3}])");
+  EXPECT_THAT(imported.text(), HasSubstr("Probe: {address: 2, type: INT, invalid: 0x7FFF}"));
+  EXPECT_THAT(imported.text(), HasSubstr("rate: 1\n"));
+  EXPECT_THAT(imported.said, HasSubstr("'Chamber' is at the same place as 'Probe' in line 2, so it is left "
+                                       "out; lost: 'scale', 'units'; a map has one point"));
+}
+
+TEST(HomeAssistantImport, The_entity_that_stays_takes_over_what_says_nothing_else) {
+  const Imported imported = hub(R"(climates: [{name: Chamber, address: 2, input_type: input, scale: 0.1}],
+    sensors: [{name: Probe, address: 2, input_type: input, nan_value: 0x7FFF, scan_interval: 1}])");
+  EXPECT_THAT(imported.text(),
+              HasSubstr("Chamber: {address: 2, type: INT, scale: 0.1, units: \"°C\", invalid: 0x7FFF}"));
+  EXPECT_THAT(imported.text(), HasSubstr("rate: 1\n"));
+  EXPECT_THAT(imported.said,
+              HasSubstr("'Probe' is at the same place as 'Chamber' in line 2, so it is left out; 'Chamber' "
+                        "takes over 'invalid', 'scan_interval: 1'; lost: that it has no 'scale'; a map"));
+
+  const Imported written =
+      hub("sensors: [{name: s, address: 3, scan_interval: 2, nan_value: 9}], "
+          "covers: [{name: c, address: 3}]");
+  EXPECT_THAT(written.text(), AllOf(HasSubstr("rate: 0.5\n"), HasSubstr("c: {address: 3, type: UINT")));
+  EXPECT_THAT(written.said,
+              HasSubstr("so it is left out; 'c' takes over 'scan_interval: 2'; lost: 'invalid', "
+                        "its type or size;"));
+}
+
 TEST(HomeAssistantImport, The_fastest_interval_is_the_maps_rate) {
   const Imported imported =
       hub("binary_sensors: [{name: a, address: 1, scan_interval: 5}, {name: b, address: 2, "
