@@ -8,7 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "coupler/map/loader/keys.hpp"
 #include "coupler/map/loader/line_error.hpp"
+#include "coupler/map/loader/scalar.hpp"
 #include "coupler/map/loader/source_text.hpp"
 
 namespace coupler::loader {
@@ -20,7 +22,7 @@ struct Explanation {
   std::string_view remedy;
 };
 
-constexpr std::array<Explanation, 13> explanations{{
+constexpr std::array<Explanation, 12> explanations{{
     {"end of map flow not found", "',' or '}' is missing before this",
      "separate entries with ',' and end them with '}'; put text that contains ': ' in quotes"},
     {"end of sequence flow not found", "',' or ']' is missing before this",
@@ -35,8 +37,6 @@ constexpr std::array<Explanation, 13> explanations{{
      "write one 'key: value' a line, all at one indentation"},
     {"illegal block entry", "'- ' does not belong here", "begin the list in the line below its key"},
     {"illegal flow end", "the bracket has no opening one", "remove it, or open it before"},
-    {"unknown token", "no value begins with this character",
-     "put a text in quotes; an address is a number, without '%' and letters"},
     {"unknown escape character", "the escape is not known",
      "write '\\\\' for a backslash, or use single quotes"},
     {"invalid unicode", "the escape stands for no character (half of a surrogate pair)",
@@ -153,12 +153,53 @@ SyntaxError wrong_bracket(std::string_view text, std::size_t offset, std::size_t
           fmt::format("close it with '{}'", closing(text[open]))};
 }
 
+/// The word before the ':' before `offset`; empty if none stands there.
+std::string_view key_before(std::string_view text, std::size_t offset) {
+  const std::size_t colon = text.find_last_not_of(" \t", offset - 1);
+  if (offset == 0 || colon == std::string_view::npos || text[colon] != ':') return {};
+  const std::size_t before = text.substr(0, colon).find_last_of("{,\n");
+  const std::size_t begin =
+      text.find_first_not_of(" \t-\"'", before == std::string_view::npos ? 0 : before + 1);
+  const std::string_view key = text.substr(begin, colon - begin);
+  return key.substr(0, key.find_last_not_of(" \t\"'") + 1);
+}
+
+/// The value at `offset`, as it was meant.
+std::string_view value_at(std::string_view text, std::size_t offset, bool in_brackets) {
+  const std::string_view line = text.substr(offset, text.substr(offset).find_first_of("\r\n"));
+  const std::size_t end = std::min(in_brackets ? line.find_first_of(",}]") : line.size(), line.find(" #"));
+  const std::string_view value = line.substr(0, end);
+  return value.substr(0, value.find_last_not_of(" \t") + 1);
+}
+
+/// Names that no key has are points, and what stands behind them is an address.
+bool holds_an_address(std::string_view key) {
+  if (!key.empty() && is_letter(key[0]) && sections_with(key) == Section::none) return true;
+  const Span<const Key> keys = all_keys();
+  return std::any_of(keys.begin(), keys.end(),
+                     [key](const Key& each) { return each.name == key && each.kind == ValueKind::address; });
+}
+
+/// '%', '@' or a backtick before a text without quotes.
+SyntaxError explain_first_character(std::string_view text, std::size_t offset, bool in_brackets) {
+  const std::string_view key = key_before(text, offset);
+  const std::string_view value = value_at(text, offset, in_brackets);
+  std::string remedy = "put a text in quotes";
+  if (holds_an_address(key))
+    remedy = fmt::format("an address is a number, without '{}' and letters", text[offset]);
+  else if (!key.empty() && !value.empty() && value.find_first_of("\"\\") == std::string_view::npos)
+    remedy = fmt::format("put the text in quotes, as in '{}: \"{}\"'", key, value);
+  return {position_of(text, offset),
+          fmt::format("no value begins with '{}' unless it is in quotes", text[offset]), std::move(remedy)};
+}
+
 /// Returns an explanation from the text itself; nullopt if the parser's message is the better one.
 std::optional<SyntaxError> explain_by_text(std::string_view text, std::size_t offset,
                                            std::string_view message, const Before& before) {
   const auto says = [&](std::string_view begin) { return message.substr(0, begin.size()) == begin; };
   if (says("end of map flow") || says("end of sequence flow"))
     return explain_in_brackets(text, offset, before);
+  if (says("unknown token")) return explain_first_character(text, offset, !before.open.empty());
   if (is_json(text)) return std::nullopt;
   if (says("illegal flow end") && !before.open.empty() && text[offset] != closing(text[before.open.back()]))
     return wrong_bracket(text, offset, before.open.back());
