@@ -18,10 +18,10 @@ constexpr std::array<char, tables.size()> prefixes{'0', '1', '3', '4'};
 
 char prefix_of(Table table) { return prefixes[index(table)]; }
 
-std::string owner_of(char prefix) {
+std::optional<Table> owner_of(char prefix) {
   for (const Table table : tables)
-    if (prefix_of(table) == prefix) return fmt::format("'{}' stands for {}", prefix, to_string(table));
-  return fmt::format("'{}' stands for no table", prefix);
+    if (prefix_of(table) == prefix) return table;
+  return std::nullopt;
 }
 
 tl::unexpected<AddressError> wrong(std::string what, std::string remedy) {
@@ -94,15 +94,26 @@ tl::expected<std::uint16_t, AddressError> parse_zero_based(std::string_view text
                remedy.empty() ? "write the zero-based address" : std::move(remedy));
 }
 
+/// The number begins with the prefix of another table, or of none.
+tl::unexpected<AddressError> of_another_table(std::string_view text, Table table) {
+  const auto owner = owner_of(text[0]);
+  const std::string_view digits = text.substr(1);
+  const auto number = parse_unsigned(digits);
+  const char prefix = prefix_of(table);
+  std::string remedy = fmt::format("write it in six digits, '{}' and the number from 00001 to 65536", prefix);
+  if (owner && *number >= 1 && *number <= addresses)
+    remedy = fmt::format("move the point to {}, or write {}{}", to_string(*owner), prefix, digits);
+  return wrong(fmt::format("{} is not a Modicon address of {}: '{}' stands for {}", text, to_string(table),
+                           text[0], owner ? to_string(*owner) : "no table"),
+               std::move(remedy));
+}
+
 tl::expected<std::uint16_t, AddressError> parse_modicon(std::string_view text, Table table) {
   if (!is_number(text) || text.size() > 6)
     return wrong(fmt::format("a Modicon address has up to six digits, not {}", shown(text)),
                  fmt::format("write it as in '1' or '{}0001'", prefix_of(table)));
   const bool prefixed = text.size() >= 5;
-  if (prefixed && text[0] != prefix_of(table))
-    return wrong(
-        fmt::format("{} is not a Modicon address of {}: {}", text, to_string(table), owner_of(text[0])),
-        fmt::format("write it in six digits, '{}' and the number from 00001", prefix_of(table)));
+  if (prefixed && text[0] != prefix_of(table)) return of_another_table(text, table);
   const auto number = parse_unsigned(text.substr(prefixed ? 1 : 0));
   if (*number >= 1 && *number <= addresses) return static_cast<std::uint16_t>(*number - 1);
   return wrong(fmt::format("a Modicon number must be from 1 to 65536, not {}", *number),
