@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the coupler is: at an address, or on a serial line.
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "coupler/map/loader/map_reader.hpp"
+#include "coupler/map/nearest.hpp"
 #include "coupler/map/network.hpp"
 
 namespace coupler::loader {
@@ -22,7 +25,10 @@ void check_address(const Reader& top, Connection& connection, const Context& con
 void check_serial(const Reader& top, const Connection& connection, const Context& context) {
   const Entry* entry = top.find("serial");
   if (entry == nullptr || entry->kind != Entry::Kind::map) return;
-  if (child(*entry, "device") == nullptr)
+  const auto is_meant = [](const Entry& key) {
+    return key.key == "device" || nearest(key.key, key_names(Section::serial)) == "device";
+  };
+  if (std::none_of(entry->children.begin(), entry->children.end(), is_meant))
     context.problems.error(entry->key_at, "'serial' has no 'device'",
                            "add the port's device file, as in 'device: /dev/ttyUSB0'");
   if (!is_serial_rate(connection.serial.baud))
@@ -47,7 +53,7 @@ void check_tls(const Reader& top, Connection& connection, const Context& context
   connection.tls.folder = context.folder;
   for (const std::string_view key : {"certificate", "key", "ca"}) check_pem_path(*reader, key, context);
   for (const std::string_view key : {"certificate", "key"})
-    if (!reader->has(key))
+    if (reader->lacks(key))
       context.problems.error(
           at, fmt::format("'tls' has no '{}'", key),
           fmt::format("add the path of that file, as in '{}: {}'", key, reader->example(key)));

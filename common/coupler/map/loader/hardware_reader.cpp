@@ -56,8 +56,9 @@ std::optional<Reader> channel(const Reader& point, std::string_view key, std::st
   draft.line_at = entry->at;
   auto reader = point.inside(key, expected);
   if (!reader || reader->missing().empty()) return reader;
-  context.problems.error(entry->key_at, fmt::format("'{}' has no '{}'", key, reader->missing()),
-                         fmt::format("write it as in '{}: {}'", key, point.example(key)));
+  if (reader->lacks(reader->missing()))
+    context.problems.error(entry->key_at, fmt::format("'{}' has no '{}'", key, reader->missing()),
+                           fmt::format("write it as in '{}: {}'", key, point.example(key)));
   return std::nullopt;
 }
 

@@ -21,6 +21,7 @@ Deadman read_deadman(const Entry& entry, const Point& point, const Context& cont
   const Reader reader(entry, Section::deadman, context);
   const Entry* value = reader.find("value");
   if (!reader.missing().empty()) {
+    if (!reader.lacks(reader.missing())) return deadman;
     context.problems.error(entry.key_at, "'deadman' needs a 'timeout' and a 'value'",
                            "write it as in 'deadman: {timeout: 1s, value: 0}'");
     return deadman;

@@ -25,7 +25,7 @@ std::string_view read_name(const Reader& top, const Entry& root, std::string_vie
   } else if (!otherwise.empty()) {
     name = context.map.keep(std::string(otherwise));
     check_map_name(name, root.at, context);
-  } else {
+  } else if (top.lacks("name")) {
     context.problems.error(root.at, "the map has no 'name'", "add 'name: NAME', the namespace of its topics");
   }
   return name;
@@ -81,6 +81,7 @@ std::vector<TableEntry> find_points(const Reader& top, const Entry& root, const 
   std::vector<TableEntry> found;
   const Entry* mapping = top.find("mapping");
   if (mapping == nullptr) {
+    if (!top.lacks("mapping")) return found;
     context.problems.error(
         root.at, "the map has no 'mapping'",
         "add 'mapping:' with the tables and their points, as in 'mapping: {coils: {valve: 0}}'");

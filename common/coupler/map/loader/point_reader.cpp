@@ -37,6 +37,12 @@ void read_address(const Entry* entry, Addressing addressing, DraftPoint& draft, 
     context.problems.error(entry->at, address.error().what, address.error().remedy);
 }
 
+/// A key is misspelt without which it is not known where the point is, or how large. Errors say so.
+bool misspells_size(const Reader& reader) {
+  const auto keys = {"address", "type", "length", "count", "bit", "offset"};
+  return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return reader.misspells(key); });
+}
+
 void check_range(const DraftPoint& draft, const Context& context) {
   const Point& point = draft.point;
   const std::uint32_t size = std::uint32_t{point.count} * codec::registers(point.format);
@@ -178,9 +184,10 @@ DraftPoint read_place(const Entry& entry, Table table, const PointDefaults& defa
   read_address(bits && !has_options ? &entry : options.find("address"), defaults.addressing, draft, context);
   if (!bits && has_options) read_format(options, entry, defaults.order, point.format, context);
   draft.part_given = !bits && (options.has("offset") || options.has("bit") || options.has("bits"));
-  if (context.problems.errors() == errors) read_count(options, point, context);
-  if (context.problems.errors() == errors && !draft.addressless) check_range(draft, context);
-  const bool good = context.problems.errors() == errors;
+  const auto good_so_far = [&] { return context.problems.errors() == errors && !misspells_size(options); };
+  if (good_so_far()) read_count(options, point, context);
+  if (good_so_far() && !draft.addressless) check_range(draft, context);
+  const bool good = good_so_far();
   draft.placed = good && !draft.addressless;
   draft.addressless = good && draft.addressless;
   read_access(options, point, context);

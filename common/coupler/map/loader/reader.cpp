@@ -105,10 +105,18 @@ const Entry* Reader::find(std::string_view key) const {
   return found == nullptr ? nullptr : found->value;
 }
 
+bool Reader::misspells(std::string_view key) const {
+  return std::find(misspelt_.begin(), misspelt_.end(), key) != misspelt_.end();
+}
+
 std::string_view Reader::missing() const {
-  for (const Key& key : all_keys())
-    if (key.required && overlap(key.sections, section_) && field(key.name) == nullptr) return key.name;
-  return {};
+  std::string_view found;
+  for (const Key& key : all_keys()) {
+    if (!key.required || !overlap(key.sections, section_)) continue;
+    if (lacks(key.name)) return key.name;
+    if (found.empty() && !has(key.name)) found = key.name;
+  }
+  return found;
 }
 
 std::optional<Reader> Reader::inside(std::string_view key, std::string_view expected) const {

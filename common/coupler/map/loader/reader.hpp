@@ -49,9 +49,13 @@ class Reader {
   /// The value of the key, or nullptr.
   const Entry* find(std::string_view key) const;
   bool has(std::string_view key) const { return find(key) != nullptr; }
+  /// The key is absent, and not there with a slip either, of which an error has said what it should be.
+  bool lacks(std::string_view key) const { return !has(key) && !misspells(key); }
+  bool misspells(std::string_view key) const;
   /// The section has a key of that name.
   bool knows(std::string_view key) const { return find_key(key, section_) != nullptr; }
-  /// The first required key that is absent; empty if there is none. For sections without a type.
+  /// The first required key that is absent, rather one that it lacks; empty if there is none. For sections
+  /// without a type.
   std::string_view missing() const;
   std::string_view example(std::string_view key) const { return find_key(key, section_)->example; }
 
@@ -126,7 +130,7 @@ class Reader {
   };
 
   void check_key(const Entry& entry);
-  void unknown(const Entry& entry) const;
+  void unknown(const Entry& entry);
   void misplaced(const Entry& entry, Section elsewhere) const;
   const Field* field(std::string_view key) const;
   std::optional<std::int64_t> integer_in_range(std::string_view key) const;
@@ -138,6 +142,7 @@ class Reader {
   Section section_;
   const Context& context_;
   std::vector<Field> fields_;
+  std::vector<std::string_view> misspelt_;  ///< known keys
 };
 
 /// The value as a message shows it: the text of a scalar, or "a list", "a map", "nothing".

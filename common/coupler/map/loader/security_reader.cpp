@@ -166,7 +166,7 @@ void read_tls(const Reader& reader, const Entry& section, std::uint16_t plain_po
                            "give TLS another port; 802 is the usual one");
   if (reader.has("certificate")) {
     for (const std::string_view key : {"key", "ca"})
-      if (!reader.has(key))
+      if (reader.lacks(key))
         context.problems.error(
             section.key_at, fmt::format("'security' has a 'certificate', but no '{}'", key),
             fmt::format("add the path of that file, as in '{}: {}'", key, reader.example(key)));
@@ -202,6 +202,7 @@ Security read_security(const Reader& top, const DraftPoints& drafts, std::uint16
   if (!reader) return {};
   const Entry* entry = reader->find("roles");
   if (entry == nullptr) {
+    if (!reader->lacks("roles")) return {};
     context.problems.error(top.find("security")->key_at, "'security' has no 'roles'",
                            "add them, as in 'roles: {viewer: {read: all}}'");
     return {};

@@ -17,7 +17,7 @@ Watchdog read_watchdog(const Reader& top, const Context& context) {
   Watchdog watchdog;
   const auto reader = top.inside("watchdog", "a map with 'timeout'");
   if (!reader) return watchdog;
-  if (!reader->has("timeout"))
+  if (reader->lacks("timeout"))
     context.problems.error(top.find("watchdog")->key_at, "'watchdog' has no 'timeout'",
                            "add 'timeout: 500ms', the longest silence of a client");
   reader->fields(watchdog);
@@ -82,6 +82,7 @@ std::optional<Area> read_area(const Entry& entry, std::string_view key, Addressi
                               const Context& context) {
   const Reader area(entry, Section::area, context);
   if (entry.kind != Entry::Kind::map || !area.missing().empty()) {
+    if (entry.kind == Entry::Kind::map && !area.lacks(area.missing())) return std::nullopt;
     context.problems.error(entry.at, fmt::format("an area of '{}' needs 'table', 'from' and 'to'", key),
                            fmt::format("write it as in '{}: [{{table: coils, from: 8, to: 15}}]'", key));
     return std::nullopt;

@@ -70,7 +70,7 @@ void Reader::misplaced(const Entry& entry, Section elsewhere) const {
                    context_.unless_served(std::move(remedy)));
 }
 
-void Reader::unknown(const Entry& entry) const {
+void Reader::unknown(const Entry& entry) {
   if (context_.problems.is_full()) {  // a remedy would take time for nobody
     if (!context_.served && !context_.foreign) context_.problems.error(entry.key_at, "unknown key", "");
     return;
@@ -80,6 +80,7 @@ void Reader::unknown(const Entry& entry) const {
   const auto here = key_names(section_);
   const std::string_view near = nearest(entry.key, here);
   const bool slip = !near.empty();
+  if (slip && !context_.served) misspelt_.push_back(near);
   const Key* other = slip ? nullptr : slip_of_another_section(entry.key);
   const Synonym* synonym = slip ? nullptr : find_synonym(entry.key, section_);
   const bool is_point = section_ == Section::mapping && !slip && synonym == nullptr &&

@@ -53,7 +53,7 @@ void check_type_keys(const Reader& reader, const Entry& point, Type type, const 
     const bool needless = !key.needless_with.empty() && reader.has(key.needless_with);
     const bool required_here = !key.required_with.empty() && reader.has(key.required_with) && !needless;
     const bool required = key.required || required_here;
-    if (!given && applies && required)
+    if (reader.lacks(key.name) && applies && required)
       context.problems.error(
           point.key_at,
           fmt::format("{} is a {} and has no '{}'", shown(point.key), to_string(type), key.name),
@@ -256,6 +256,7 @@ void read_format(const Reader& reader, const Entry& point, Order order, Format& 
                  const Context& context) {
   const std::size_t errors = context.problems.errors();
   if (!reader.has("type")) {
+    if (!reader.lacks("type")) return;
     context.problems.error(point.key_at, fmt::format("{} has no type", shown(point.key)),
                            reader.has("bits")  ? "add 'type: UINT'"
                            : reader.has("bit") ? "add 'type: BOOL'"

@@ -62,7 +62,7 @@ class SimReader {
     check_source(reader, entry);
     if (const Entry* to = reader.find("to"))
       check_input(*to);
-    else
+    else if (reader.lacks("to"))
       context_.problems.error(entry.at, "the wire has no 'to'",
                               "add 'to: NAME', the discrete input at its end");
     return wire;
@@ -120,7 +120,7 @@ EdgeOf read_edge(const Reader& point, std::string_view key, DraftPoint& draft, c
   reader->fields(edge);
   if (const Entry* input = reader->find("of")) {
     draft.edge_at = input->at;
-  } else {
+  } else if (reader->lacks("of")) {
     context.problems.error(point.find(key)->key_at, fmt::format("'{}' has no 'of'", key),
                            "add 'of: NAME', the discrete input whose edges count");
   }
