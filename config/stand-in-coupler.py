@@ -6,6 +6,7 @@
     coupler_driver --map config/foreign-coupler.yaml --address 127.0.0.1 --port 5020
 """
 import argparse
+import logging
 import os
 import socket
 import sys
@@ -24,6 +25,11 @@ try:
 except OSError as error:
     sys.exit(f"stand-in-coupler: cannot listen on {ADDRESS} port {port}: {os.strerror(error.errno)}; end the program that "
              f"listens there, or give another port: config/stand-in-coupler.py {5021 if port == 5020 else 5020}")
+
+# pymodbus calls these errors, too: a read of what the coupler does not have, and a client that leaves.
+USUAL = ("Exception Response(", "has been canceled")
+for handler in logging.getLogger().handlers:
+    handler.addFilter(lambda record: not any(usual in record.getMessage() for usual in USUAL))
 
 inputs = [False] * 16
 inputs[0] = inputs[1] = True                    # clamped, door_closed

@@ -52,6 +52,7 @@ def serves_once(port, checks):
     finally:
         process.kill()
         process.wait()
+    checks.equal("it says nothing of reads that it refuses, and of clients that leave", process.stderr.read(), "")
 
 
 def main():
