@@ -47,10 +47,12 @@ bool is_of_the_driver(const Point& point) {
 
 }  // namespace
 
-void ConversionWarnings::add(std::string_view what, std::string_view remedy, std::string_view point) {
+void ConversionWarnings::add(std::string_view what, std::string_view remedy, std::string_view point,
+                             loader::Position at) {
   auto found = std::find_if(warnings_.begin(), warnings_.end(),
                             [what](const ConversionWarning& warning) { return warning.what == what; });
-  if (found == warnings_.end()) found = warnings_.insert(found, {std::string(what), std::string(remedy), {}});
+  if (found == warnings_.end())
+    found = warnings_.insert(found, {std::string(what), std::string(remedy), {}, at});
   if (point.empty() || (!found->points.empty() && found->points.back() == point)) return;
   found->points.emplace_back(point);
 }
@@ -61,6 +63,8 @@ Diagnostics ConversionWarnings::diagnostics(std::string_view file) const {
     Diagnostic diagnostic;
     diagnostic.severity = Diagnostic::Severity::warning;
     diagnostic.file = file;
+    diagnostic.line = warning.at.line;
+    diagnostic.column = warning.at.column;
     diagnostic.what = warning.what + list_of(warning.points);
     diagnostic.remedy = warning.remedy;
     out.push_back(std::move(diagnostic));

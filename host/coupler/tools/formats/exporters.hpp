@@ -10,6 +10,7 @@
 
 #include "coupler/base/span.hpp"
 #include "coupler/map/diagnostic.hpp"
+#include "coupler/map/loader/document.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::formats {
@@ -17,8 +18,9 @@ namespace coupler::formats {
 /// Warns of the keys that an export leaves out, with the points concerned.
 class ConversionWarnings {
  public:
-  /// Warnings with the same `what` become one that lists their points.
-  void add(std::string_view what, std::string_view remedy, std::string_view point = {});
+  /// Warnings with the same `what` become one that lists their points. It is about the first one's place.
+  void add(std::string_view what, std::string_view remedy, std::string_view point = {},
+           loader::Position at = {});
 
   /// One warning each, about `file`: "units are comments only: speed, level".
   Diagnostics diagnostics(std::string_view file) const;
@@ -28,6 +30,7 @@ class ConversionWarnings {
     std::string what;
     std::string remedy;
     std::vector<std::string> points;
+    loader::Position at;
   };
   std::vector<ConversionWarning> warnings_;
 };

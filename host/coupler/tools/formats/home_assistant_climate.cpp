@@ -139,7 +139,8 @@ void add_climate(Entity& entity) {
     entity.add(entity.point("_onoff", Table::coils, *address, PointUse::both));
   for (const std::string_view key : {"min_temp", "max_temp"})
     if (settings.find(key) != nullptr)
-      entity.lose(fmt::format("'{}' is not carried over", key), "give the target's point 'min' and 'max'");
+      entity.lose(fmt::format("'{}' is not carried over", key), "give the target's point 'min' and 'max'",
+                  key);
 }
 
 }  // namespace coupler::formats

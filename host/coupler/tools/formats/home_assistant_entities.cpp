@@ -42,7 +42,7 @@ void add_sensor(Entity& entity) {
   for (const std::string_view key : {"min_value", "max_value", "zero_suppress"})
     if (settings.find(key) != nullptr)
       entity.lose(fmt::format("'{}' changes what Home Assistant shows and is not carried over", key),
-                  "a map publishes what the device holds; 'min' and 'max' say what is to be expected");
+                  "a map publishes what the device holds; 'min' and 'max' say what is to be expected", key);
   warn_of_reading_only(table, entity);
   for (const RegisterValue& value : read_data_type(settings)) {
     FoundPoint found = entity.with_value(value, "", table, entity.address(), PointUse::read);
@@ -52,7 +52,8 @@ void add_sensor(Entity& entity) {
         found.entry.children.push_back(scalar("invalid", none, entity.given().at));
       else
         entity.lose(fmt::format("'nan_value: {}' does not fit into the registers", none),
-                    "write what the device gives for no value as 'invalid', as in 'invalid: 0x8000'");
+                    "write what the device gives for no value as 'invalid', as in 'invalid: 0x8000'",
+                    "nan_value");
     }
     if (!units.empty()) found.entry.children.push_back(scalar("units", units, entity.given().at, true));
     entity.add(std::move(found));
@@ -105,7 +106,7 @@ void read_verify(FoundPoint& found, Entity& entity, const Names& commands) {
   found.read_address = address;
   if (!holds_bits(table) && states != commands)
     entity.lose("'state_on' and 'state_off' other than the commands are not carried over",
-                "compare with the number that the point publishes");
+                "compare with the number that the point publishes", "verify");
 }
 
 void add_light_part(std::string_view key, const std::string& suffix, Entity& entity) {
@@ -127,7 +128,7 @@ void add_toggle(bool is_light, Entity& entity) {
   const Names commands = {{off, "off"}, {on, "on"}};
   if (holds_bits(table) && on == 0)
     entity.lose("Home Assistant switches these on by writing 0, but a point has the coil's own state",
-                "write false to switch it on");
+                "write false to switch it on", "command_on");
   FoundPoint found = entity.named("", table, entity.address(), PointUse::write, commands);
   found.write_multiple = Entity::writes_multiple("write_type", settings);
   const bool verified = loader::child(entity.given(), "verify") != nullptr;  // without a value, too
@@ -144,7 +145,7 @@ void add_toggle(bool is_light, Entity& entity) {
   for (const std::string_view key : {"min_temp", "max_temp"})
     if (settings.find(key) != nullptr)
       entity.lose("the colour temperature at 0 % and at 100 % is not carried over",
-                  "write it into the description");
+                  "write it into the description", key);
 }
 
 void add_cover(Entity& entity) {

@@ -38,6 +38,12 @@ const Entry* unit_of(const Entry& entity) {
   return address != nullptr ? address : loader::child(entity, "slave");
 }
 
+void Entity::lose(std::string_view what, std::string_view remedy, std::string_view key) {
+  const Entry* place = loader::child(given_, key);
+  if (place == nullptr) place = loader::child(given_, "name");
+  losses_.add(what, remedy, name_, place != nullptr ? place->key_at : given_.at);
+}
+
 void Entity::add(FoundPoint point) {
   const Entry* unit = unit_of(given_);
   UnitPoints& points = points_[unit_];
@@ -60,9 +66,9 @@ bool Entity::read_place() {
   address_ = *address;
   if (interval_ == 0)
     lose("what is never read by itself ('scan_interval: 0') is read at the map's rate",
-         "give the points a 'rate'");
+         "give the points a 'rate'", "scan_interval");
   if (interval_ > longest_interval) {
-    lose("entities are read every 1000 s at least", "no action is needed");
+    lose("entities are read every 1000 s at least", "no action is needed", "scan_interval");
     interval_ = longest_interval;
   }
   return true;
@@ -71,7 +77,8 @@ bool Entity::read_place() {
 void Entity::report_rest() {
   for (const std::string_view key : own_keys)
     if (settings_.find(key) != nullptr)
-      lose(fmt::format("'{}' belongs to Home Assistant and is not carried over", key), "no action is needed");
+      lose(fmt::format("'{}' belongs to Home Assistant and is not carried over", key), "no action is needed",
+           key);
   settings_.report_rest();
 }
 

@@ -206,7 +206,8 @@ std::vector<ForeignUnit> read_hub(const Entry& hub, Problems& problems) {
     if (const Entry* entities = loader::child(hub, platform))
       for (const Entry& entity : list_of(*entities)) add_entity(platform, entity, points, losses, problems);
   for (auto& each : points) each.second.settle(problems);
-  for (const Diagnostic& loss : losses.diagnostics("")) problems.warning(hub.at, loss.what, loss.remedy);
+  for (const Diagnostic& loss : losses.diagnostics(""))
+    problems.warning({loss.line, loss.column}, loss.what, loss.remedy);
   if (points.empty() && !problems.has_errors())
     problems.error(hub.at, fmt::format("the hub '{}' has no entities", name_of(hub)),
                    "give it sensors or switches");

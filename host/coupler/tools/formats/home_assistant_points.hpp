@@ -143,8 +143,9 @@ class Entity {
   unsigned address() const { return address_; }
   Settings& settings() { return settings_; }
 
-  /// The whole export's warning of that kind, with the names of its entities.
-  void lose(std::string_view what, std::string_view remedy) { losses_.add(what, remedy, name_); }
+  /// The whole import's warning of that kind, with the names of its entities, at the first one's `key`, or at
+  /// its name.
+  void lose(std::string_view what, std::string_view remedy, std::string_view key = "name");
 
   /// "holding" or "coils", as `key` says it.
   static Table table_of(std::string_view key, std::string_view fallback, Settings& settings);

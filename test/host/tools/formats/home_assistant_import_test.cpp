@@ -231,6 +231,19 @@ TEST(HomeAssistantImport, The_entity_that_stays_takes_over_what_says_nothing_els
                         "its type or size;"));
 }
 
+TEST(HomeAssistantImport, What_is_not_carried_over_is_told_at_the_first_entitys_key) {
+  const Imported imported = hub(R"(sensors: [{name: a, address: 1,
+    device_class: x, max_value: 9}, {name: b, address: 2, max_value: 9}],
+    climates: [{name: Chamber, address: 2, target_temp_register: 3,
+    min_temp: 5}])");
+  EXPECT_THAT(imported.said, HasSubstr("5:5: warning: 'min_temp' is not carried over: Chamber"));
+  EXPECT_THAT(imported.said, HasSubstr("3:5: warning: 'device_class' belongs to Home Assistant"));
+  EXPECT_THAT(imported.said,
+              HasSubstr("3:22: warning: 'max_value' changes what Home Assistant shows and is not "
+                        "carried over: a, b"));
+  EXPECT_THAT(imported.said, Not(HasSubstr("2:5: warning")));
+}
+
 TEST(HomeAssistantImport, The_fastest_interval_is_the_maps_rate) {
   const Imported imported =
       hub("binary_sensors: [{name: a, address: 1, scan_interval: 5}, {name: b, address: 2, "
