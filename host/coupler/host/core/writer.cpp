@@ -74,13 +74,16 @@ std::future<CallAnswer> Writer::ask_safe() {
 
 bool Writer::withdraw(const WriteListener& listener) {
   const auto write = queue_.take_of(listener);
-  if (write) queue_.settled(write->point);
-  return write.has_value();
+  if (!write) return false;
+  queue_.settled(write->point);
+  note_owed(*write, false);
+  return true;
 }
 
 bool Writer::send_now() {
   if (send_error_ || !batch_.empty() || !link_.is_ready()) return false;
   drop_late();
+  if (owes_) return false;
   if (queue_.empty()) return true;     // the owner was faster
   if (!link_.reserve()) return false;  // first: in the queue a newer value may replace it until its turn
   queue_.take(batch_, merges_, false);
@@ -119,7 +122,7 @@ Result<> Writer::step() {
   if (is_sent_) return finish(link_.receive());
   if (is_safe_asked()) return make_safe();
   fire_deadmen();
-  if (queue_.empty()) {
+  if (queue_.empty() && !owes_) {
     link_.give_back();
     return {};
   }
@@ -128,6 +131,7 @@ Result<> Writer::step() {
   if (is_safe_asked()) return make_safe();
   fire_deadmen();
   drop_late();
+  if (const std::vector<Write> owed = take_owed(); !owed.empty()) return restore(owed);
   if (!withdraws()) queue_.take(batch_, merges_);
   if (batch_.empty()) {  // they were too late, or are being withdrawn
     link_.give_back();
@@ -275,7 +279,10 @@ Result<> Writer::make_safe() {
 
 /// `on_reconnect: restore` brings these back, and not what was written before them.
 Result<std::vector<RejectedValue>> Writer::write_safe_values() {
-  for (const Write& write : safe_values_) remember(write);
+  for (const Write& write : safe_values_) {
+    remember(write);
+    owed_.erase(write.point);
+  }
   link_.rank(Rank::safe);
   auto rejected = write_values(safe_values_, map_, link_);
   for (const Write& write : safe_values_) remember(write);  // an older value may have been told meanwhile
@@ -293,6 +300,7 @@ void Writer::tell(const Write& write, const WriteResult& result) {
 void Writer::settle(const Write& write, const WriteResult& result) {
   is_settled_ = true;
   queue_.settled(write.point);
+  note_owed(write, result.outcome == Outcome::ok || result.outcome == Outcome::not_taken);
   tell(write, result);
   if (result.outcome != Outcome::ok && result.outcome != Outcome::kept) report(write, result);
 }

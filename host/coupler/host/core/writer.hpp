@@ -77,7 +77,7 @@ class Writer {
 
   /// The time at which step() has something to do; it is in the past if that is now.
   Time due() const {
-    return batch_.empty() && queue_.empty() && !is_safe_asked() ? deadmen_.due() : Time::min();
+    return batch_.empty() && queue_.empty() && !is_safe_asked() && !owes_ ? deadmen_.due() : Time::min();
   }
   /// Waits for the reply to the request in flight, or sends the next request and waits for its reply. An
   /// error means that the connection can no longer be used. An exception is not an error.
@@ -126,6 +126,10 @@ class Writer {
   Result<> finish_one(const Write& write, const Result<>& answer, const Result<>& connection = {});
   Result<> verify(const Write& write, const Result<>& connection);
   Result<> restore();
+  Result<> restore(const std::vector<Write>& all);
+  void note_owed(const Write& write, bool is_written);
+  void forget_owed();
+  std::vector<Write> take_owed();
   Time deadman_due(std::uint32_t point, bool is_away) const;
   void suspect(const std::vector<Write>& writes, const Error& why);
   Result<> make_safe();
@@ -152,6 +156,9 @@ class Writer {
   Deadmen deadmen_;
   std::map<std::uint32_t, Write> last_written_;  ///< by point; restored by `on_reconnect: restore`
   std::set<std::uint32_t> suspects_;             ///< points whose last write ended the connection
+  /// Points that were not restored because a newer value waits. They are if nothing comes of that.
+  std::set<std::uint32_t> owed_;
+  bool owes_ = false;  ///< nothing came of a newer value for one of these
   std::vector<Write> safe_values_;
   std::vector<bool> is_safe_point_;  ///< by point: whether safe_values_ has a value of it
   Calls safe_calls_;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What becomes of a writer's values when the connection ends, and which are written again over the next one.
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "coupler/host/core/writer.hpp"
@@ -32,16 +34,56 @@ Result<> Writer::reconnected() {
   return {};
 }
 
-/// Those that ended a connection go last, each by itself.
+/// Those for which a newer value waits are owed until that is written.
 Result<> Writer::restore() {
+  forget_owed();
+  std::vector<Write> values;
+  for (const auto& [point, write] : last_written_)
+    if (queue_.is_pending(point))
+      owed_.insert(point);
+    else
+      values.push_back(write);
+  return restore(values);
+}
+
+/// Call it when a write was settled or withdrawn. A deadman's value was to end what would be restored.
+void Writer::note_owed(const Write& write, bool is_written) {
+  if (owed_.count(write.point) == 0) return;
+  if (is_written || write.of_deadman)
+    owed_.erase(write.point);
+  else
+    owes_ = true;
+}
+
+void Writer::forget_owed() {
+  owed_.clear();
+  owes_ = false;
+}
+
+/// Those for which still another value waits stay owed.
+std::vector<Write> Writer::take_owed() {
+  std::vector<Write> values;
+  if (!std::exchange(owes_, false)) return values;
+  for (auto point = owed_.begin(); point != owed_.end();) {
+    if (queue_.is_pending(*point)) {
+      ++point;
+      continue;
+    }
+    const auto last = last_written_.find(*point);
+    if (last != last_written_.end()) values.push_back(last->second);
+    point = owed_.erase(point);
+  }
+  return values;
+}
+
+/// Those that ended a connection go last, each by itself.
+Result<> Writer::restore(const std::vector<Write>& all) {
   std::vector<std::vector<Write>> requests(1);
-  for (const auto& [point, write] : last_written_) {
-    if (queue_.is_pending(point)) continue;
-    if (suspects_.count(point) > 0)
+  for (const Write& write : all)
+    if (suspects_.count(write.point) > 0)
       requests.push_back({write});
     else
       requests.front().push_back(write);
-  }
   std::size_t restored = 0;
   for (const std::vector<Write>& values : requests) {
     std::vector<Write> broken;
@@ -84,6 +126,7 @@ void Writer::suspect(const std::vector<Write>& writes, const Error& why) {
 void Writer::disconnected(const Error& why) {
   is_sent_ = false;
   send_error_.reset();
+  forget_owed();
   safe_calls_.close(to_string(why));
   const Result<> lost = tl::make_unexpected(why);
   finish_done(lost);  // what an exception has left there
