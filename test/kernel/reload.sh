@@ -193,7 +193,7 @@ mv "$map.long" "$map"
 kill -HUP "$(pid node)"
 check "a long one is being read" wait_until pgrep -x coupler-map
 reader=$(pgrep -x coupler-map)
-kill -STOP "$reader"  # it shall not have read all of it before the rest has happened
+kill -STOP "$reader"  # it must not read all of it before the rest has happened
 kill -KILL "$before"
 check "the output is safe meanwhile, against its pull" wait_until level_is 0 0
 check "another worker process is started" wait_until new_worker "$before"

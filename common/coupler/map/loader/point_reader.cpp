@@ -37,7 +37,7 @@ void read_address(const Entry* entry, Addressing addressing, DraftPoint& draft, 
     context.problems.error(entry->at, address.error().what, address.error().remedy);
 }
 
-/// A key is misspelt without which it is not known where the point is, or how large. Errors say so.
+/// A key that says where the point is, or how large it is, is misspelt. An error has named it.
 bool misspells_size(const Reader& reader) {
   const auto keys = {"address", "type", "length", "count", "bit", "offset"};
   return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return reader.misspells(key); });

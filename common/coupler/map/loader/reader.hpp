@@ -29,7 +29,7 @@ struct Context {
   bool foreign = false;
   std::string_view folder{};  ///< of the file, where paths in it begin
 
-  /// Nothing can be mended in a served map: load_node_map() says what to do.
+  /// The user cannot change a served map: load_node_map() says what to do.
   std::string unless_served(std::string remedy) const { return served ? std::string() : std::move(remedy); }
   void problem(bool is_warning, Position at, std::string what, std::string remedy) const {
     if (is_warning)
@@ -49,13 +49,13 @@ class Reader {
   /// The value of the key, or nullptr.
   const Entry* find(std::string_view key) const;
   bool has(std::string_view key) const { return find(key) != nullptr; }
-  /// The key is absent, and not there with a slip either, of which an error has said what it should be.
+  /// The key is absent, and not misspelt either, in which case an error has named the right spelling.
   bool lacks(std::string_view key) const { return !has(key) && !misspells(key); }
   bool misspells(std::string_view key) const;
   /// The section has a key of that name.
   bool knows(std::string_view key) const { return find_key(key, section_) != nullptr; }
-  /// The first required key that is absent, rather one that it lacks; empty if there is none. For sections
-  /// without a type.
+  /// The first required key that is absent, preferably one that is not misspelt; empty if there is none. For
+  /// sections without a type.
   std::string_view missing() const;
   std::string_view example(std::string_view key) const { return find_key(key, section_)->example; }
 

@@ -120,7 +120,7 @@ std::size_t indentation(std::string_view text, std::size_t offset) {
   return std::min(text.find_first_not_of(' ', start), text.size()) - start;
 }
 
-/// Only blanks stand between, and no entry begins there, whose ',' would be missing.
+/// Only blanks are between the quote and `offset`, and no entry begins there that lacks a ',' before it.
 bool is_text_behind_quote(std::string_view text, std::size_t offset, std::size_t quote_end) {
   const std::size_t next = text.find_first_not_of(" \t", quote_end);
   const std::size_t entry_end = text.find_first_of(":,{}[]\n", offset);
@@ -172,7 +172,7 @@ std::string_view value_at(std::string_view text, std::size_t offset, bool in_bra
   return value.substr(0, value.find_last_not_of(" \t") + 1);
 }
 
-/// Names that no key has are points, and what stands behind them is an address.
+/// A name that is no key is a point's, and its value is an address.
 bool holds_an_address(std::string_view key) {
   if (!key.empty() && is_letter(key[0]) && sections_with(key) == Section::none) return true;
   const Span<const Key> keys = all_keys();
@@ -180,7 +180,7 @@ bool holds_an_address(std::string_view key) {
                      [key](const Key& each) { return each.name == key && each.kind == ValueKind::address; });
 }
 
-/// '%', '@' or a backtick before a text without quotes.
+/// Explains '%', '@' or a backtick before a text without quotes.
 SyntaxError explain_first_character(std::string_view text, std::size_t offset, bool in_brackets) {
   const std::string_view key = key_before(text, offset);
   const std::string_view value = value_at(text, offset, in_brackets);

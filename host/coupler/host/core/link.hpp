@@ -103,10 +103,10 @@ class Link {
 
   /// FC 1 … 4: fills `values` with `range.count()` registers (at most 125), or bits as 0 or 1 (at most 2000).
   Result<> read(Table table, modbus::Range range, std::uint16_t* values);
-  /// Does the same, in a request as large as Map::read_whole wants it.
+  /// Does the same, in a request that is as large as Map::read_whole requires.
   Result<> read_as_mapped(const Map& map, Table table, modbus::Range range, std::uint16_t* values);
-  /// Does the same as read(), but an exception is an answer: false, the device does not have them. It is
-  /// counted as a reply and as no exception, unless it says that the unit is away.
+  /// Does the same as read(), but returns false after an exception: the device does not have them. The
+  /// exception is counted as a reply only, unless it says that the unit is away.
   Result<bool> read_if_mapped(Table table, modbus::Range range, std::uint16_t* values);
   /// FC 20 with one group: fills `registers` (1 … 121) from a file.
   Result<> read_file_record(std::uint16_t file, std::uint16_t record, Span<std::uint16_t> registers);

@@ -156,9 +156,9 @@ class Writer {
   Deadmen deadmen_;
   std::map<std::uint32_t, Write> last_written_;  ///< by point; restored by `on_reconnect: restore`
   std::set<std::uint32_t> suspects_;             ///< points whose last write ended the connection
-  /// Points that were not restored because a newer value waits. They are if nothing comes of that.
+  /// Points that were not restored because a newer value waits. They are if that is not written.
   std::set<std::uint32_t> owed_;
-  bool owes_ = false;  ///< nothing came of a newer value for one of these
+  bool owes_ = false;  ///< the newer value for one of these was not written
   std::vector<Write> safe_values_;
   std::vector<bool> is_safe_point_;  ///< by point: whether safe_values_ has a value of it
   Calls safe_calls_;

@@ -34,7 +34,7 @@ Result<> Writer::reconnected() {
   return {};
 }
 
-/// Those for which a newer value waits are owed until that is written.
+/// Points for which a newer value waits are owed until that is written.
 Result<> Writer::restore() {
   forget_owed();
   std::vector<Write> values;
@@ -46,7 +46,7 @@ Result<> Writer::restore() {
   return restore(values);
 }
 
-/// Call it when a write was settled or withdrawn. A deadman's value was to end what would be restored.
+/// Call it when a write was settled or withdrawn. A deadman's value was meant to end the one to restore.
 void Writer::note_owed(const Write& write, bool is_written) {
   if (owed_.count(write.point) == 0) return;
   if (is_written || write.of_deadman)
@@ -60,7 +60,7 @@ void Writer::forget_owed() {
   owes_ = false;
 }
 
-/// Those for which still another value waits stay owed.
+/// Points for which yet another value waits stay owed.
 std::vector<Write> Writer::take_owed() {
   std::vector<Write> values;
   if (!std::exchange(owes_, false)) return values;
@@ -76,7 +76,7 @@ std::vector<Write> Writer::take_owed() {
   return values;
 }
 
-/// Those that ended a connection go last, each by itself.
+/// Writes that ended a connection go last, each by itself.
 Result<> Writer::restore(const std::vector<Write>& all) {
   std::vector<std::vector<Write>> requests(1);
   for (const Write& write : all)

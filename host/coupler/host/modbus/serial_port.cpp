@@ -86,8 +86,7 @@ std::string opener_of(const std::string& device) {
   return {};
 }
 
-/// "process 1234 (coupler_driver)", another one that has the device file open; empty: none that this user may
-/// look at.
+/// "process 1234 (coupler_driver)", another one that has the device file open; empty: this user may see none.
 std::string holder_of(const std::string& device) {
   std::string pid = locker_of(device);
   if (pid == std::to_string(::getpid())) return {};

@@ -105,7 +105,7 @@ void DeviceDriver::begin(const Followed& followed) {
       thread_.want(point, wanted);
     });
   subscribers_.on_each([this](std::uint32_t point) { thread_.want(point, true); });
-  // Before what takes minutes for many points: as soon as something can be written, safe values can be had.
+  // Before the topics, which take minutes for many points: safe values are available before any write is.
   services_.start(
       node_, {writes_, [this] { return driven().reset_watchdog(); }, [this] { return driven().make_safe(); },
               [this](const ScheduledWrite& what) { return driven().schedule(what); },

@@ -109,7 +109,7 @@ bool TopicCheck::concerns(const std::string& topic) const {
 
 std::vector<Finding> TopicCheck::check(const std::vector<Endpoint>& others) const {
   Names met[2];   // topics that somebody subscribes to, and those that somebody publishes
-  Names drivers;  // they publish `online`, too, and are told of by DuplicateDriver
+  Names drivers;  // they publish `online`, too, and DuplicateDriver reports them
   for (const Endpoint& other : others) {
     met[other.publishes ? 1 : 0].insert(other.topic);
     if (other.publishes && !before("/online", other.topic).empty() && published_.count(other.topic) > 0)

@@ -21,8 +21,8 @@ struct Endpoint {
   std::string type;        ///< empty: not known; "*": it takes any
 };
 
-/// The topics of this node, and what is wrong with what others do there: they use another type, or a name
-/// that leads nowhere, and nothing comes; or they publish what this node publishes. ROS lets them.
+/// The topics of this node, and the mistakes of other nodes there: they use another type, or a name that
+/// leads nowhere, so that no message arrives; or they publish what this node publishes. ROS allows all of it.
 class TopicCheck {
  public:
   /// `space`: where the device's topics are, "/cell/press". Maps and points must outlive it.
@@ -40,7 +40,8 @@ class TopicCheck {
   /// Returns whether it is one of this node's topics, or others may take it for one.
   bool concerns(const std::string& topic) const;
 
-  /// `others`: all ends of the topics that concerns() knows. What is sure stands first. They refer to this.
+  /// `others`: all ends of the topics that concerns() knows. Findings that are certain come first. All refer
+  /// to this object.
   std::vector<Finding> check(const std::vector<Endpoint>& others) const;
 
  private:

@@ -29,7 +29,7 @@ class Registrations {
   void update();
   /// At the last update().
   const std::vector<DuplicateDriver>& duplicates() const { return duplicates_; }
-  /// At the last update(): what other nodes have of topics that concern `topics`, without types.
+  /// At the last update(): the ends that other nodes have of topics that concern `topics`, without types.
   const std::vector<Endpoint>& others() const { return others_; }
   /// Registers this node with a master that does not know it. False if the master did not take all. Not while
   /// ROS shuts down: this node has been unregistered then.

@@ -21,8 +21,8 @@ namespace {
 using XmlRpc::XmlRpcDispatch;
 using XmlRpc::XmlRpcValue;
 
-/// A node may hang: all answers together are waited for this often and, in seconds, this long. The end of the
-/// driver waits for one of these waits.
+/// A node may hang, so there are this many waits for all answers together, of this many seconds each. The end
+/// of the driver is delayed by one of them at most.
 constexpr int most_waits = 20;
 constexpr double wait = 0.05;
 

@@ -62,7 +62,7 @@ void spell_names_of(Entry& mapping, Problems& problems) {
     for (Entry& point : table.children) {
       Named named{point.key, point.key_at, needs_spelling(point.key)};
       if (named.was_spelt && !spell(point, problems)) {
-        point.key = fmt::format("point_of_line_{}", point.key_at.line);  // nothing more is told of it
+        point.key = fmt::format("point_of_line_{}", point.key_at.line);  // nothing more is reported of it
         continue;
       }
       const auto [other, is_first] = names.emplace(lower(mended_name(point.key, "point")), named);
@@ -75,9 +75,9 @@ void spell_names_of(Entry& mapping, Problems& problems) {
     }
 }
 
-/// Writes names with letters of other alphabets than ASCII in its small letters ("Ölstand" becomes
-/// "oelstand"), and tells each. A name with a letter for which there is none, and one that another point has
-/// then, is an error.
+/// Spells names that have other letters than those of ASCII in small letters of ASCII ("Ölstand" becomes
+/// "oelstand"), and reports each. It is an error if a letter has no such spelling, or if another point then
+/// has the same name.
 void spell_names(std::vector<ForeignUnit>& units, Problems& problems) {
   for (ForeignUnit& unit : units)
     if (Entry* mapping = find(unit.map, "mapping")) spell_names_of(*mapping, problems);

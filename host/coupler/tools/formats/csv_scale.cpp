@@ -44,7 +44,7 @@ void add_exponent(const RowView& row, RowPoint& point) {
   if (!power)
     row.problems.error(cell->at, fmt::format("{} is not an exponent of ten", shown(cell->text)),
                        "write a whole number from -30 to 30, or nothing");
-  else if (factor)  // the loader tells that the other is none
+  else if (factor)  // the loader reports that the other is none
     set(point.entry, scalar("scale", fmt::format("{:.15g}", *factor * *power), cell->at));
 }
 

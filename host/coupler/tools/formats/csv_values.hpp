@@ -34,7 +34,7 @@ struct NumberAndName {
   std::string number;
   std::string name;
 };
-/// Those of "0=Off;1=On"; empty if the text is something else, or `values` of a map cannot have some name.
+/// The values of "0=Off;1=On"; empty if the text is something else, or `values` of a map cannot have a name.
 std::vector<NumberAndName> read_names(std::string_view text);
 
 /// All that the registers of the type can hold, which says nothing about the value.

@@ -18,7 +18,7 @@ namespace coupler::formats {
 /// Warns of the keys that an export leaves out, with the points concerned.
 class ConversionWarnings {
  public:
-  /// Warnings with the same `what` become one that lists their points. It is about the first one's place.
+  /// Warnings with the same `what` become one that lists their points. It has the place of the first.
   void add(std::string_view what, std::string_view remedy, std::string_view point = {},
            loader::Position at = {});
 

@@ -61,7 +61,7 @@ bool have_same_value(const FoundPoint& a, const FoundPoint& b) {
          });
 }
 
-/// Gives the point that stays what it may have of the one that goes. Returns what the warning says of it.
+/// Gives the point that stays what it may take from the one that goes. Returns what the warning says of it.
 std::string merge(FoundPoint& stays, const FoundPoint& goes) {
   std::vector<std::string> taken;
   std::vector<std::string> lost;

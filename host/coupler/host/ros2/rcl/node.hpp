@@ -68,8 +68,8 @@ class Node {
     bool publishes;    ///< or else it subscribes
     std::string type;
   };
-  /// Returns those of all other nodes. They are asked for by node, since by topic each costs a look at all
-  /// ends of the graph. Of several nodes with the same name, one.
+  /// Returns the ends of all other nodes, but of several nodes with the same name only those of one. It asks
+  /// by node, since each question by topic costs a look at all ends of the graph.
   std::vector<End> ends_of_others() const;
 
  private:
