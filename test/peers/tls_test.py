@@ -121,7 +121,7 @@ def a_reload(node, ca, checks):
     node.await_line("the key does not belong to the certificate")
     checks.equal("a key that does not belong to its certificate changes nothing", operator.code(READ_LAMP), 1)
     node.reload(without_viewer.replace("list.pem", "strange_list.pem"), "the new map is refused")
-    node.await_line("is of none of the authorities in 'ca'")
+    node.await_line("comes from none of the authorities in 'ca'")
     checks.equal("nor does a list of another authority", operator.code(READ_LAMP), 1)
     whole = (node.folder / "list.pem").read_text()
     ca.list(options=("-crlexts", "delta"))

@@ -167,7 +167,7 @@ class ByTheDriver(ScheduleTest):
         self.refused("pressure cannot be written", "pressure", "1")
         self.refused("at most 1000", "speed", "70000")
         self.refused("at most 1000", "speed", "1001")
-        self.refused("s past; send a time to come", "speed", "1", -NEVER)
+        self.refused("s in the past; send a future time", "speed", "1", -NEVER)
         self.refused("an hour (3600 s) is the most", "speed", "1", 3 * NEVER)
         self.refused("up to an hour (3600 s)", "speed", "1", how_long=3 * NEVER)
         self.refused("Schedule a second write of horn", "horn", "true", how_long=SOON)

@@ -96,7 +96,7 @@ tl::expected<std::string, std::string> read_pem_file(std::string_view what, std:
   text.resize(size);
   if (is_secret && text.find("PRIVATE KEY") == std::string::npos &&
       text.find("BEGIN CERTIFICATE") != std::string::npos)
-    return failed("is a certificate; perhaps 'certificate' and 'key' are exchanged");
+    return failed("is a certificate; perhaps 'certificate' and 'key' are swapped");
   if (is_secret)
     if (const auto why = why_not_secret(status, full)) return failed("is not secret: " + *why);
   return text;

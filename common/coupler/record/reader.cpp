@@ -103,7 +103,7 @@ DeviceState state_of(const json& object) {
 }
 
 Line line_of(const json& object) {
-  if (!object.is_object()) throw Wrong("it is no JSON object");
+  if (!object.is_object()) throw Wrong("it is not a JSON object");
   const Moment at = moment_of(object);
   if (object.contains("record")) throw Wrong("another recording begins here; play each by itself");
   if (object.contains("device")) return {at, state_of(object)};

@@ -80,7 +80,7 @@ std::string failure_text(const SSL* ssl, int result, const Verification& verific
     case SSL_R_PACKET_LENGTH_TOO_LONG: return no_tls;
     case SSL_R_UNSUPPORTED_PROTOCOL:
     case SSL_R_VERSION_TOO_LOW: return "the other side speaks neither TLS 1.2 nor TLS 1.3";
-    case SSL_R_NO_SHARED_CIPHER: return "the other side has no cipher in common";
+    case SSL_R_NO_SHARED_CIPHER: return "the two sides have no cipher in common";
     case SSL_R_PEER_DID_NOT_RETURN_A_CERTIFICATE: return "the other side shows no certificate";
     default: return text;
   }

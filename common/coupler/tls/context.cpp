@@ -29,7 +29,7 @@ Problem problem(std::string text) { return tl::unexpected(std::move(text)); }
 
 tl::expected<std::vector<KeyPtr>, std::string> read_keys(const std::string& pem) {
   if (pem.find("ENCRYPTED") != std::string::npos)
-    return problem("the key is protected by a password; 'openssl pkey -in KEY -out NEW' takes it off");
+    return problem("the key is protected by a password; 'openssl pkey -in KEY -out NEW' removes it");
   auto all = read_all<KeyPtr, PEM_read_bio_PrivateKey>(
       pem, "the key's file", {PEM_STRING_PKCS8INF, PEM_STRING_ECPRIVATEKEY, PEM_STRING_RSA});
   if (all && all->empty())
@@ -157,7 +157,7 @@ tl::expected<void, std::string> believe_lists(X509_STORE* store, const std::stri
   }
   if (std::none_of(lists.begin(), lists.end(), [](const auto& each) { return each.maker != nullptr; }))
     return problem(
-        "the list of revoked certificates is of none of the authorities in 'ca', so that all of their "
+        "the list of revoked certificates comes from none of the authorities in 'ca', so that all of their "
         "clients would be refused; have it made by each of them");
   for (const RevocationList& each : lists) {
     const auto replaces = [&each](const RevocationList& other) { return takes_the_place_of(other, each); };

@@ -220,7 +220,7 @@ TEST(RecordReader, A_time_that_no_recording_has_is_refused) {
 }
 
 TEST(RecordReader, JSON_that_is_no_object_is_refused) {
-  EXPECT_EQ(error_of("[1]\n"), "press.jsonl:2: it is no JSON object");
+  EXPECT_EQ(error_of("[1]\n"), "press.jsonl:2: it is not a JSON object");
 }
 
 TEST(RecordReader, A_last_line_that_is_cut_short_is_the_end) {

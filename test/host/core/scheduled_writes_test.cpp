@@ -218,7 +218,7 @@ TEST_F(ScheduledWritesTest, A_call_withdraws_it_while_it_waits_behind_another_un
 TEST_F(ScheduledWritesTest, The_limits_are_told_with_what_is_possible) {
   begin_foreign(press());
   EXPECT_EQ(schedule("lamp", 1, milliseconds(-5)).number, 0U);
-  EXPECT_THAT(schedule("lamp", 1, seconds(-5)).text, HasSubstr("5.000 s past; send a time to come"));
+  EXPECT_THAT(schedule("lamp", 1, seconds(-5)).text, HasSubstr("5.000 s in the past; send a future time"));
   EXPECT_THAT(schedule("lamp", 1, hours(2)).text, HasSubstr("an hour (3600 s) is the most"));
   EXPECT_THAT(schedule("lamp", 1, seconds(1), milliseconds(-1)).text, HasSubstr("send 0, for good"));
   EXPECT_THAT(schedule("lamp", 1, seconds(1), hours(2)).text, HasSubstr("up to an hour"));

@@ -159,7 +159,7 @@ TEST_F(RecordFileTest, What_is_no_file_is_refused_and_stays) {
   ASSERT_LT(path().string().size(), sizeof address.sun_path);
   path().string().copy(address.sun_path, sizeof address.sun_path - 1);
   ASSERT_EQ(::bind(socket, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
-  EXPECT_THAT(why_not_opened(), HasSubstr("/press.jsonl is no file; name one"));
+  EXPECT_THAT(why_not_opened(), HasSubstr("/press.jsonl is not a file; name one"));
   EXPECT_THAT(names(), ElementsAre("press.jsonl"));
   ::close(socket);
 }
@@ -174,7 +174,7 @@ TEST_F(RecordFileTest, A_foreign_file_that_has_the_next_name_stays) {
 
 TEST_F(RecordFileTest, A_folder_is_refused_with_what_to_do) {
   fs::create_directory(path());
-  EXPECT_THAT(why_not_opened(), HasSubstr("/press.jsonl is no file; name one"));
+  EXPECT_THAT(why_not_opened(), HasSubstr("/press.jsonl is not a file; name one"));
 }
 
 TEST_F(RecordFileTest, A_file_that_is_being_written_is_refused_until_that_ends) {

@@ -25,7 +25,7 @@ std::string refusal(modbus::Exception code) {
     case Exception::illegal_data_address: return what + ": its map has no such output";
     case Exception::illegal_data_value:
       return what +
-             ": it does not take that value, its time was over when the request arrived, its clock has "
+             ": it does not take that value, its time had passed when the request arrived, its clock has "
              "jumped or "
              "it has just read a new map; try again with a later time";
     case Exception::server_device_failure:

@@ -18,7 +18,7 @@ double in_seconds(Duration duration) { return std::chrono::duration<double>(dura
 std::string why_impossible(const ScheduledWrite& what, Time now) {
   if (what.due < now - most_past)
     return fmt::format(
-        "its time is {:.3f} s past; send a time to come, by this machine's clock (not a simulation's)",
+        "its time is {:.3f} s in the past; send a future time, by this machine's clock (not a simulation's)",
         in_seconds(now - what.due));
   if (what.due > now + most_ahead)
     return fmt::format("its time is {:.0f} s ahead, and an hour (3600 s) is the most; ask again later",

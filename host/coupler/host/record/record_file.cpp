@@ -109,7 +109,7 @@ tl::expected<RecordFile, std::string> RecordFile::open(fs::path path, Limits lim
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
   if (fs::exists(status) && !fs::is_regular_file(status))
-    return Problem(path.string() + " is no file; name one (`-o -` is standard output)");
+    return Problem(path.string() + " is not a file; name one (`-o -` is standard output)");
   if (fs::exists(status) && ::access(path.c_str(), R_OK | W_OK) != 0)
     return Problem(problem_text(path, errno) + "; name another file");
   if (fs::exists(status) && !is_recording(path))

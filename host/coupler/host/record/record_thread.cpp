@@ -88,7 +88,7 @@ bool RecordThread::take(const tl::expected<void, std::string>& outcome, Time now
 void RecordThread::miss(const std::string& why) {
   missing_since_ = last_written_;
   why_missing_ = why;
-  report_(Level::error, why + "; nothing is recorded until that is mended");
+  report_(Level::error, why + "; nothing is recorded until that is fixed");
 }
 
 }  // namespace coupler::host
