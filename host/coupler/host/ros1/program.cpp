@@ -24,6 +24,7 @@
 #include "coupler/host/ros/configuration.hpp"
 #include "coupler/host/ros/drive.hpp"
 #include "coupler/host/ros1/arguments.hpp"
+#include "coupler/host/ros1/namesake.hpp"
 #include "coupler/host/ros1/node.hpp"
 #include "coupler/map/printable.hpp"
 
@@ -31,9 +32,9 @@ namespace coupler::host {
 namespace {
 
 /// The name is overridden by `__name`. Without a master it waits for one, and a signal exits; afterwards the
-/// first one is left to ROS, as long as the driver has not its own handler. False after printing what ROS
-/// does not accept.
-bool init_ros(std::vector<char*> argv, const std::string& name) {
+/// first one is left to ROS, as long as the driver has not its own handler. Otherwise, after printing why,
+/// the exit code: ROS does not accept the name, or another node has it.
+std::optional<int> init_ros(std::vector<char*> argv, const std::string& name) {
   int argc = static_cast<int>(argv.size());
   try {
     // ROS's own handler only notes that it is to end, and nobody looks at that while there is no master.
@@ -41,11 +42,16 @@ bool init_ros(std::vector<char*> argv, const std::string& name) {
   } catch (const ros::InvalidNameException& error) {
     print_message(fmt::format("{}; an argument for one device begins with '_', as in _press/address:=HOST",
                               error.what()));
-    return false;
+    return wrong_call;
   }
+  if (const auto error = namesake_error()) {
+    print_message(*error);
+    return wrong_input;
+  }
+  tell_why_ros_ends();
   ros::start();  // here, or else the end of the first NodeHandle ends ROS
   Shutdown::unregister_on_signals(ros::requestShutdown);
-  return true;
+  return std::nullopt;
 }
 
 std::optional<std::string> text_of(XmlRpc::XmlRpcValue& value);
@@ -151,7 +157,7 @@ int run(const Map* built_in, const Arguments& arguments) {
   // gives the name, and the parameters are those of that name.
   std::optional<Ros1Node> node;
   if (arguments.names_the_node) {
-    if (!init_ros(arguments.for_ros, "coupler_driver")) return wrong_call;
+    if (const auto code = init_ros(arguments.for_ros, "coupler_driver")) return *code;
     const auto parameters = read_parameters(ros::NodeHandle("~"));
     if (!parameters) {
       print_message(parameters.error());
@@ -166,7 +172,8 @@ int run(const Map* built_in, const Arguments& arguments) {
   if (!sources) return sources.error();
   const std::string name =
       node_name(arguments.settings.name.value_or(std::string(sources->front().map.name)));
-  if (!arguments.names_the_node && !init_ros(arguments.for_ros, name)) return wrong_call;
+  if (!arguments.names_the_node)
+    if (const auto code = init_ros(arguments.for_ros, name)) return *code;
   const auto devices = configure_all(std::move(*sources), arguments);
   if (!devices) return devices.error();
   // roscpp would shut down in a thread of its own, while this one still uses it.

@@ -5,15 +5,14 @@
 #include <XmlRpcDispatch.h>
 #include <XmlRpcException.h>
 #include <ros/init.h>
-#include <ros/master.h>
 #include <ros/network.h>
-#include <ros/this_node.h>
 
 #include <cstdint>
 #include <memory>
 #include <utility>
 
 #include "coupler/host/ros/program.hpp"
+#include "coupler/host/ros1/node_uri.hpp"
 
 namespace coupler::host {
 namespace {
@@ -33,22 +32,6 @@ struct Call {
   std::unique_ptr<XmlRpc::XmlRpcClient> client;
   Types* types;
 };
-
-XmlRpcValue own_name() {
-  XmlRpcValue arguments;
-  arguments[0] = ros::this_node::getName();
-  return arguments;
-}
-
-/// Empty: the master does not know the node, or does not answer.
-std::string uri_of(const std::string& node) {
-  XmlRpcValue arguments = own_name();
-  arguments[1] = node;
-  XmlRpcValue response;
-  XmlRpcValue uri;
-  if (!ros::master::execute("lookupNode", arguments, response, uri, false)) return {};
-  return uri.getType() == XmlRpcValue::TypeString ? static_cast<std::string&>(uri) : std::string();
-}
 
 /// Reads [code, text, [[topic, type], …]]. Anything else is left out: a node of another make may answer it.
 void read(XmlRpcValue& answer, Types& types) {
