@@ -165,6 +165,47 @@ TEST_F(TopicCheckTest, A_misspelt_topic_is_told_with_the_one_that_was_meant) {
               ElementsAre(::testing::HasSubstr("did you mean /cell/press/online?")));
 }
 
+TEST_F(TopicCheckTest, A_publisher_that_forgets_or_misspells_the_end_is_told_where_to_write) {
+  for (const char* const topic :
+       {"/cell/press/lamp/wirte", "/cell/press/lamp/set", "/cell/press/lmap", "/cell/press/lmap/wirte"})
+    EXPECT_THAT(
+        told({{topic, "/ui", publishes, "std_msgs/Bool"}}),
+        ElementsAre(std::string(topic) + ": node /ui publishes here, and nobody listens; did you mean "
+                                         "/cell/press/lamp/write?"));
+  EXPECT_THAT(told({{"/cell/press/order", "/ui", publishes, "std_msgs/UInt16"}}),
+              ElementsAre(::testing::HasSubstr("did you mean /cell/press/order/write?")));
+  EXPECT_THAT(told({{"/cell/press/write", "/ui", publishes, "std_msgs/Bool"}}),
+              ElementsAre("/cell/press/write: node /ui publishes here, and nobody listens: it has no point. "
+                          "Publish at the point's, as /cell/press/lamp/write"));
+  EXPECT_THAT(told({{"/cell/press/lamp/wirte", "/ui", publishes, "std_msgs/Bool"},
+                    {"/cell/press/lamp/wirte", "/other", subscribes, "std_msgs/Bool"}}),
+              IsEmpty());
+}
+
+TEST_F(TopicCheckTest, A_publisher_that_misspells_the_device_is_told_if_it_can_be_no_other) {
+  for (const char* const topic :
+       {"/cell/pres/lamp/write", "/cel/press/lamp/write", "/cell/perss/lamp/write"}) {
+    EXPECT_TRUE(check.concerns(topic)) << topic;
+    EXPECT_THAT(
+        told({{topic, "/ui", publishes, "std_msgs/Bool"}}),
+        ElementsAre(std::string(topic) + ": node /ui publishes here, and nobody listens; did you mean "
+                                         "/cell/press/lamp/write?"));
+  }
+  for (const char* const topic :
+       {"/cell/press2/lamp/write", "/cell/prest/lamp/write", "/cell/pres/lmap/write", "/cell/pres/lamp",
+        "/cell/pr/lamp/write", "/lamp/write"}) {
+    EXPECT_FALSE(check.concerns(topic)) << topic;
+    EXPECT_THAT(told({{topic, "/ui", publishes, "std_msgs/Bool"}}), IsEmpty()) << topic;
+  }
+  check.add_device("/cell/presss", map);
+  check.add_written("/cell/presss/lamp/write", "std_msgs/Bool", points[0]);
+  EXPECT_THAT(told({{"/cell/pres/lamp/write", "/ui", publishes, "std_msgs/Bool"}}), ::testing::SizeIs(1));
+  check.add_device("/cell/prses", map);
+  check.add_written("/cell/prses/lamp/write", "std_msgs/Bool", points[0]);
+  EXPECT_THAT(told({{"/cell/pres/lamp/write", "/ui", publishes, "std_msgs/Bool"}}), IsEmpty())
+      << "it may be the one or the other";
+}
+
 TEST_F(TopicCheckTest, A_topic_of_others_below_the_device_is_not_told) {
   EXPECT_THAT(told({{"/cell/press/lamb/write", "/ui", publishes, "std_msgs/Bool"},
                     {"/cell/press/lamb/write", "/lamb", subscribes, "std_msgs/Bool"}}),
@@ -172,9 +213,11 @@ TEST_F(TopicCheckTest, A_topic_of_others_below_the_device_is_not_told) {
       << "they have each other";
   EXPECT_THAT(told({{"/cell/press/filtered_pressure", "/ui", subscribes, "std_msgs/Float32"},
                     {"/cell/press/gripper/write", "/ui", publishes, "std_msgs/Bool"},
-                    {"/cell/press/lmap", "/ui", publishes, "std_msgs/Bool"}}),
+                    {"/cell/press/filtered", "/ui", publishes, "std_msgs/Float32"},
+                    {"/cell/press/flow/filtered", "/ui", publishes, "std_msgs/Float32"},
+                    {"/cell/press/lmap/filtered", "/ui", publishes, "std_msgs/Bool"}}),
               IsEmpty())
-      << "nothing is near, or it is not one end of a write";
+      << "nothing is near";
   EXPECT_THAT(told({{"/other/lmap/write", "/ui", publishes, "std_msgs/Bool"}}), IsEmpty());
 }
 

@@ -98,6 +98,8 @@ class WrongTopics:
         self.begin()
         self.publish(f"/{self.name}/lmap/write", Bool)
         self.warned("lmap/write", f"node {self.PUBLISHER} publishes here, and nobody listens; did you mean /{self.name}/lamp/write?")
+        self.publish(f"/{self.name}/lamp/wirte", Bool)
+        self.warned("lamp/wirte", f"node {self.PUBLISHER} publishes here, and nobody listens; did you mean /{self.name}/lamp/write?")
         self.listen(f"/{self.name}/setpiont", UInt16)
         self.warned("setpiont", f"node {self.SUBSCRIBER} subscribes, and nobody publishes here; did you mean "
                     f"/{self.name}/setpoint?")

@@ -68,6 +68,21 @@ std::string nobody_there(const Endpoint& other) {
       other.publishes ? "publishes here, and nobody listens" : "subscribes, and nobody publishes here");
 }
 
+/// Of two names one of which is a slip of the other. Those that differ in a number, or have one letter in
+/// place of another (arm_l, arm_r), are rather two devices.
+bool is_same_device(std::string_view written, std::string_view device) {
+  if (edit_distance(written, device) != 1 || !is_slip(written, device)) return false;
+  const auto kept = [](std::string_view name, bool (*keep)(char)) {
+    std::string rest;
+    std::copy_if(name.begin(), name.end(), std::back_inserter(rest), keep);
+    return rest;
+  };
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  return kept(written, is_digit) == kept(device, is_digit) &&
+         (written.size() != device.size() ||
+          std::is_permutation(written.begin(), written.end(), device.begin()));
+}
+
 /// Points of the map that fit; for subscribers the other topics of a device, too.
 std::vector<std::string_view> names_of(const Map& map, bool (*fits)(const Point&), bool with_others) {
   std::vector<std::string_view> names;
@@ -104,7 +119,7 @@ bool TopicCheck::concerns(const std::string& topic) const {
   return published_.count(topic) > 0 || written_.count(topic) > 0 || device_of(topic) != nullptr ||
          point_of(published_, before(write_end, topic)) != nullptr ||
          point_of(published_, before_stamped_end(topic)) != nullptr ||
-         point_of(written_, topic + std::string(write_end)) != nullptr;
+         point_of(written_, topic + std::string(write_end)) != nullptr || !beside_device(topic).empty();
 }
 
 std::vector<Finding> TopicCheck::check(const std::vector<Endpoint>& others) const {
@@ -187,19 +202,62 @@ bool TopicCheck::check_direction(const Endpoint& other, bool is_alone, std::vect
 /// Only where a name is near: others may have topics beside those of a device.
 std::string TopicCheck::misspelt(const Endpoint& other) const {
   const Device* const device = device_of(other.topic);
-  if (device == nullptr) return {};
-  const std::string rest = other.topic.substr(device->space.size());
-  const std::string_view end = other.publishes ? write_end : stamped_end(rest);
+  const std::string rest = device == nullptr ? std::string() : other.topic.substr(device->space.size());
+  if (other.publishes && "/" + rest == write_end) return without_point(other, *device);
+  const std::string meant = device == nullptr ? (other.publishes ? beside_device(other.topic) : std::string())
+                            : other.publishes ? write_meant_by(*device, rest)
+                                              : value_meant_by(*device, rest);
+  return meant.empty() ? meant : fmt::format("{}; did you mean {}?", nobody_there(other), meant);
+}
+
+/// At the name of the service for writes.
+std::string TopicCheck::without_point(const Endpoint& other, const Device& device) const {
+  for (const std::string_view name : names_of(*device.map, is_writable, false))
+    if (const std::string topic = fmt::format("{}{}{}", device.space, name, write_end);
+        written_.count(topic) > 0)
+      return fmt::format("{}: it has no point. Publish at the point's, as {}", nobody_there(other), topic);
+  return {};
+}
+
+/// "lmap/write", "lamp/wirte", "lmap". Whatever is below a point that can be written is meant for it.
+std::string TopicCheck::write_meant_by(const Device& device, const std::string& rest) const {
+  const std::size_t slash = std::min(rest.rfind('/'), rest.size());
+  const std::string_view head = std::string_view(rest).substr(0, slash);
+  const std::string_view end = std::string_view(rest).substr(slash);
+  const auto names = names_of(*device.map, is_writable, false);
+  std::string_view name;
+  if (std::find(names.begin(), names.end(), head) != names.end()) name = head;
+  if (name.empty() && is_slip(end, write_end)) name = nearest(head, names);
+  if (name.empty()) name = nearest(rest, names);
+  const std::string meant = fmt::format("{}{}{}", device.space, name, write_end);
+  return written_.count(meant) > 0 ? meant : std::string();
+}
+
+std::string TopicCheck::value_meant_by(const Device& device, const std::string& rest) const {
+  const std::string_view end = stamped_end(rest);
   const std::string word = end.empty() ? rest : before(end, rest);
   if (word.empty()) return {};
   const auto is_stamped = [](const Point& point) { return point.host.stamped; };
-  const auto fits = end == write_end ? static_cast<bool (*)(const Point&)>(is_writable)
-                    : end.empty()    ? static_cast<bool (*)(const Point&)>(is_readable)
-                                     : +is_stamped;
-  const std::string_view near = nearest(word, names_of(*device->map, fits, end.empty()));
-  const std::string meant = fmt::format("{}{}{}", device->space, near, end);
-  if (near.empty() || needed_type(meant, other.publishes).empty()) return {};
-  return fmt::format("{}; did you mean {}?", nobody_there(other), meant);
+  const auto fits = end.empty() ? static_cast<bool (*)(const Point&)>(is_readable) : +is_stamped;
+  const std::string_view near = nearest(word, names_of(*device.map, fits, end.empty()));
+  const std::string meant = fmt::format("{}{}{}", device.space, near, end);
+  return near.empty() || published_.count(meant) == 0 ? std::string() : meant;
+}
+
+/// A write to a point of this driver, but for a slip in the device's name; empty if it is none, or may be for
+/// several.
+std::string TopicCheck::beside_device(const std::string& topic) const {
+  if (before(write_end, topic).empty()) return {};
+  std::string meant;
+  for (const Device& device : devices_)
+    for (std::size_t slash = topic.find('/', 1); slash != std::string::npos;
+         slash = topic.find('/', slash + 1)) {
+      std::string there = device.space + topic.substr(slash + 1);
+      if (written_.count(there) == 0 || !is_same_device(topic.substr(0, slash + 1), device.space)) continue;
+      if (!meant.empty()) return {};
+      meant = std::move(there);
+    }
+  return meant;
 }
 
 }  // namespace coupler::host
