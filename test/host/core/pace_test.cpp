@@ -39,9 +39,19 @@ struct PaceTest : testing::Test {
 TEST_F(PaceTest, A_slow_device_is_warned_of_once_with_the_rate_that_it_can_do) {
   const auto warnings = pass(60, 6, 44);
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_THAT(warnings[0], HasSubstr("too slow for 'rate: 50', and reads its points about 6 times a second"));
+  EXPECT_THAT(warnings[0], HasSubstr("too slow for 'rate: 50', or this computer is busy: its points are read "
+                                     "about 6 times a second"));
   EXPECT_THAT(warnings[0], HasSubstr("set 'rate: 6'"));
   EXPECT_EQ(pace.trouble(), warnings[0]);
+}
+
+TEST_F(PaceTest, Large_rates_are_told_without_an_exponent) {
+  auto builder = fakes::MapBuilder().holding("a", 0);
+  builder.head().polling.rate = 2000;
+  owned = builder.build();
+  const auto warnings = pass(60, 477, 1523);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0], HasSubstr("read about 480 times a second; set 'rate: 477'"));
 }
 
 TEST_F(PaceTest, A_cycle_that_is_left_out_now_and_then_is_no_trouble) {

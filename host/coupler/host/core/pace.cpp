@@ -21,6 +21,12 @@ double rounded_down(double rate) {
   return rate >= 2 ? std::floor(rate) : std::max(0.1, std::floor(rate * 10) / 10);
 }
 
+/// 477 is 480.
+double two_digits(double rate) {
+  const double step = std::pow(10, std::floor(std::log10(rate)) - 1);
+  return std::round(rate / step) * step;
+}
+
 /// The rates of a map: whether there is one only, and the fastest.
 struct Rates {
   double fastest = 0;
@@ -43,11 +49,12 @@ std::string too_slow(const Map& map, double share) {
   const double possible = rounded_down(rates.fastest * share);
   if (rates.is_one)
     return fmt::format(
-        "the device is too slow for 'rate: {:g}', and reads its points about {:.2g} times a second; set "
-        "'rate: {:g}' in the map, or --rate. `coupler plan` says what takes how long",
-        rates.fastest, rates.fastest * share, possible);
+        "the device is too slow for 'rate: {:g}', or this computer is busy: its points are read about {:g} "
+        "times a second; set 'rate: {:g}' in the map, or --rate. `coupler plan` says what takes how long",
+        rates.fastest, two_digits(rates.fastest * share), possible);
   return fmt::format(
-      "the device is too slow for the rates of the map: it does {:.0f} % of the cycles. Set lower rates; "
+      "the device is too slow for the rates of the map, or this computer is busy: {:.0f} % of the cycles are "
+      "done. Set lower rates; "
       "the fastest may be {:g} if the others are lowered, too. `coupler plan` says what takes how long",
       100 * share, possible);
 }
