@@ -145,7 +145,10 @@ class WithoutAName(SettingsTest):
         path = process.write_map("name: broken\nmapping:\n  coils: {a: 70000}\n")
         self.assert_ends(1, f"{path}:3:", f"_map:={path}", "_address:=localhost")
         self.assert_ends(1, "/nowhere.yaml", "_map:=/nowhere.yaml")
-        self.assert_ends(1, f"a relative path starts from {os.getcwd()}; roslaunch starts programs there", "_map:=nowhere.yaml")
+        self.assert_ends(1, f"there is no file {os.getcwd()}/nowhere.yaml; a relative path counts from the folder where the program starts",
+                         "_map:=nowhere.yaml")
+        self.assert_ends(1, f"there is no file {os.getcwd()}/nowhere.yaml; roslaunch starts programs in that folder",
+                         "_map:=nowhere.yaml", "__log:=/tmp/x.log")
         path = process.write_map("name: homeless\nmapping:\n  coils: {a: 7}\n")
         self.assert_ends(1, "the map has no address; add 'address: HOST' or give --address HOST", f"_map:={path}")
 

@@ -122,7 +122,7 @@ class Wrong(CallTest):
         for arguments in (("--map", path), ("--ros-args", "-p", f"map:={path}"), ("--ros-args", "-r", "__node:=io", "-p", f"map:={path}")):
             self.assert_ends(1, f"{path}:3:", *arguments)
         self.assert_ends(1, "/nowhere.yaml", "--map", "/nowhere.yaml")
-        self.assert_ends(1, f"a relative path starts from {os.getcwd()}", "--map", "nowhere.yaml")
+        self.assert_ends(1, f"there is no file {os.getcwd()}/nowhere.yaml; a relative path counts", "--map", "nowhere.yaml")
         path = process.write_map("name: homeless\nmapping:\n  coils: {a: 7}\n")
         self.assert_ends(1, "the map has no address; add 'address: HOST' or give --address HOST", "--map", path)
 

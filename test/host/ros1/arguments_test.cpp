@@ -28,6 +28,11 @@ TEST(Arguments, The_origins_name_of_the_map_is_understood) {
   EXPECT_EQ(parse({"--mapping", "a.yaml"}).settings.map, "a.yaml");
 }
 
+TEST(Arguments, It_is_known_whether_roslaunch_started_it) {
+  EXPECT_FALSE(parse({"_map:=a.yaml", "__name:=io"}).by_roslaunch);
+  EXPECT_TRUE(parse({"_map:=a.yaml", "__name:=io", "__log:=/tmp/io-1.log"}).by_roslaunch);
+}
+
 TEST(Arguments, Several_maps_are_a_list_in_each_spelling) {
   const std::vector<std::string> both{"a.yaml", "b.yaml"};
   EXPECT_EQ(parse({"_maps:=[a.yaml,b.yaml]"}).settings.maps, both);

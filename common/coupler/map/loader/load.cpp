@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iostream>
 #include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 #include <tl/expected.hpp>
@@ -17,6 +18,7 @@
 #include "coupler/map/loader/map_reader.hpp"
 #include "coupler/map/loader/source_text.hpp"
 #include "coupler/map/lock/lock.hpp"
+#include "coupler/map/nearest.hpp"
 
 namespace coupler {
 namespace {
@@ -41,6 +43,31 @@ tl::expected<std::string, int> read_file(const std::string& path) {
   auto text = read_all(in);
   if (in.bad()) return tl::make_unexpected(EISDIR);  // or another failed read, whose number is lost
   return text;
+}
+
+/// Says which file beside the one that is not there has almost its name; empty if there is none.
+std::string near_file(const std::string& path) {
+  namespace fs = std::filesystem;
+  constexpr std::size_t most_files = 1000;
+  const std::array<std::string_view, 3> endings{".yaml", ".yml", ".json"};
+  const fs::path missing(path);
+  const fs::path folder = missing.parent_path();
+  std::error_code error;
+  fs::directory_iterator each(folder.empty() ? fs::path(".") : folder, error);
+  std::vector<std::string> names;
+  for (; !error && each != fs::directory_iterator() && names.size() < most_files; each.increment(error)) {
+    const fs::path name = each->path().filename();
+    std::error_code ignored;
+    if (std::find(endings.begin(), endings.end(), name.extension().string()) == endings.end() ||
+        !each->is_regular_file(ignored))
+      continue;
+    if (name.stem() == missing.filename() || name.stem() == missing.stem())
+      return fmt::format("did you mean {}?", (folder / name).string());
+    names.push_back(name.string());
+  }
+  const std::string_view near =
+      nearest(missing.filename().string(), std::vector<std::string_view>(names.begin(), names.end()));
+  return near.empty() ? std::string() : fmt::format("did you mean {}?", (folder / near).string());
 }
 
 LoadResult no_map(const std::string& path, std::string what, std::string remedy) {
@@ -122,7 +149,10 @@ LoadResult load_map_file(const std::string& path, LockUse use, std::string_view 
   if (std::filesystem::is_character_file(path, ignored))  // a serial line has no end
     return no_map(path, "it is a device, not a file", "give the path of a map, or - for standard input");
   const auto text = read_file(path);
-  if (!text) return unreadable(path, text.error(), "give the path of a map");
+  if (!text) {
+    const std::string near = text.error() == ENOENT ? near_file(path) : std::string();
+    return unreadable(path, text.error(), near.empty() ? "give the path of a map" : near);
+  }
   LockFile lock{path + ".lock", std::nullopt, use};
   auto lock_text = read_file(lock.path);
   if (!lock_text && lock_text.error() != ENOENT)

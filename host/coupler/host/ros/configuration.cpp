@@ -85,7 +85,7 @@ class MapFinder {
     std::error_code ignored;
     if (fs::path(path).is_absolute() || fs::exists(path, ignored)) return;
     log_(Level::error,
-         fmt::format("a relative path starts from {}; {}", fs::current_path(ignored).string(),
+         fmt::format("there is no file {}; {}", fs::absolute(path, ignored).string(),
                      fmt::format(fmt::runtime(dialect_.relative_path), fmt::arg("path", path))));
   }
 

@@ -40,6 +40,7 @@ struct SortedArguments {
   std::vector<std::string_view> unknown;  ///< `_key:=VALUE` that is not a setting
   std::vector<char*> for_ros;
   bool names_the_node = false;
+  bool by_roslaunch = false;
 };
 
 SortedArguments sort(Span<char* const> arguments) {
@@ -66,6 +67,8 @@ SortedArguments sort(Span<char* const> arguments) {
       }
     } else if (starts_with(argument, "__name:=")) {
       result.names_the_node = true;
+    } else if (starts_with(argument, "__log:=")) {
+      result.by_roslaunch = true;
     }
   }
   return result;
@@ -87,13 +90,19 @@ tl::expected<void, std::string> set_of_device(Settings& settings, const DeviceAr
 const Dialect ros1_dialect{
     help,
     "as in _NAME/address:=HOST (NAME being the map's name), or as a parameter ~NAME/address",
-    "roslaunch starts programs there (in ROS_HOME): give the whole path, as in map:=$PWD/{path} or $(find "
-    "PACKAGE)/{path}",
+    "a relative path counts from the folder where the program starts",
+};
+
+const Dialect roslaunch_dialect{
+    ros1_dialect.help,
+    ros1_dialect.device_setting,
+    "roslaunch starts programs in that folder (ROS_HOME): give the whole path, as in map:=$PWD/{path} or "
+    "$(find PACKAGE)/{path}",
 };
 
 Arguments parse_arguments(Span<char* const> arguments) {
   SortedArguments given = sort(arguments);
-  Arguments result{parse_options(std::move(given.options), ros1_dialect), {}, {}, false};
+  Arguments result{parse_options(std::move(given.options), ros1_dialect), {}, {}, false, given.by_roslaunch};
   result.names_the_node = given.names_the_node;
   result.for_ros = std::move(given.for_ros);
   if (result.exit_code == 0) return result;

@@ -168,7 +168,8 @@ int run(const Map* built_in, const Arguments& arguments) {
     node.emplace();  // its diagnostics say that a map is waited for
   }
   const auto print = [](Level /*level*/, const std::string& text) { print_message(text); };
-  auto sources = find_maps(built_in, settings, ros1_dialect, print, node ? &*node : nullptr);
+  auto sources = find_maps(built_in, settings, arguments.by_roslaunch ? roslaunch_dialect : ros1_dialect,
+                           print, node ? &*node : nullptr);
   if (!sources) return sources.error();
   const std::string name =
       node_name(arguments.settings.name.value_or(std::string(sources->front().map.name)));

@@ -61,7 +61,7 @@ bool is_ROS1s(std::string_view argument) { return has(argument, ":=") && !starts
 const Dialect ros2_dialect{
     help,
     "as a parameter, as in --ros-args -p NAME.address:=HOST (NAME being the map's name)",
-    "give the whole path, as in map:=$PWD/{path}",
+    "a relative path counts from the folder where the program starts; in a launch file give the whole path",
 };
 
 Arguments parse_arguments(Span<char* const> arguments) {

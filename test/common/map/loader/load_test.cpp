@@ -139,6 +139,26 @@ TEST(Load, A_file_that_cannot_be_read_is_a_diagnostic) {
       test::in_tree("test") + ": error: the file cannot be read: Is a directory; give the path of a map\n");
 }
 
+TEST(Load, A_file_that_is_not_there_is_answered_with_one_of_almost_its_name) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::temp_directory_path() / fmt::format("near-{}", getpid());
+  fs::create_directory(folder);
+  for (const char* name : {"tx8.yaml", "press_line.yml", "tx8.txt", "belt.yaml.lock"})
+    std::ofstream(folder / name) << "name: p\n";
+  const auto remedy_for = [&](const char* name) {
+    return load_map_file((folder / name).string()).diagnostics.at(0).remedy;
+  };
+  const auto meant = [&](const char* name) {
+    return fmt::format("did you mean {}?", (folder / name).string());
+  };
+  EXPECT_EQ(remedy_for("tx8.yml"), meant("tx8.yaml"));
+  EXPECT_EQ(remedy_for("tx8.json"), meant("tx8.yaml"));
+  EXPECT_EQ(remedy_for("tx8"), meant("tx8.yaml"));
+  EXPECT_EQ(remedy_for("pres_line.yml"), meant("press_line.yml"));
+  EXPECT_EQ(remedy_for("belt.yaml"), "give the path of a map");
+  fs::remove_all(folder);
+}
+
 TEST(Load, A_device_is_refused_since_it_may_have_no_end) {
   EXPECT_EQ(to_string(load_map_file("/dev/zero").diagnostics.at(0)),
             "/dev/zero: error: it is a device, not a file; give the path of a map, or - for standard input");
