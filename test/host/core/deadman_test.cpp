@@ -70,6 +70,24 @@ TEST_F(DeadmanTest, Messages_keep_the_command) {
   EXPECT_EQ(writes(), 10U);
 }
 
+TEST_F(DeadmanTest, A_message_whose_value_the_full_queue_drops_does_not_feed_it) {
+  start_online();
+  push("speed", 500);
+  run_for(milliseconds(150));
+  Write write;
+  write.ordered = true;
+  for (std::size_t i = 0; i < WriteQueue::capacity; ++i) {
+    write.registers[0] = static_cast<std::uint16_t>(500 + i);
+    engine->push(write);
+  }
+  ASSERT_EQ(engine->statistics().written(WriteResult::Outcome::dropped), 0U);
+  clock.advance(milliseconds(100));
+  engine->push(write);
+  ASSERT_EQ(engine->statistics().written(WriteResult::Outcome::dropped), 1U);
+  run_for(milliseconds(110));  // those in the queue fed it 210 ms ago
+  EXPECT_EQ(speed(), 1);
+}
+
 TEST_F(DeadmanTest, The_next_message_arms_it_again) {
   start_online();
   for (int i = 0; i < 2; ++i) {

@@ -53,8 +53,8 @@ void Writer::push(const Write& write) {
     report(write, wrong);
     return;
   }
-  deadmen_.fed(write.point, clock_.now());
   const WriteQueue::Pushed pushed = queue_.push(write);
+  if (pushed.accepted) deadmen_.fed(write.point, clock_.now());
   if (pushed.superseded) tell(*pushed.superseded, {Outcome::superseded});
   if (pushed.accepted) return;
   const WriteResult full = {Outcome::dropped, std::nullopt, "too many writes are waiting; write less often"};
