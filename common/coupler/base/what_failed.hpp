@@ -17,4 +17,15 @@ inline std::string what_failed(const std::exception& error) {
          "; look at its limits (ulimit -u, TasksMax= of a service)";
 }
 
+/// The same of any exception.
+inline std::string what_failed(const std::exception_ptr& thrown) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const std::exception& error) {
+    return what_failed(error);
+  } catch (...) {
+    return "an exception of an unknown type";
+  }
+}
+
 }  // namespace coupler

@@ -4,8 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <future>
+#include <new>
+#include <stdexcept>
 #include <thread>
 
 #include "coupler/host/core/write.hpp"
@@ -128,6 +131,42 @@ TEST(DeviceThread, Every_write_has_a_result_when_it_ends) {
     thread.write(write);
   }
   EXPECT_EQ(ticket.wait().outcome, WriteResult::Outcome::dropped);
+}
+
+/// Throws whatever it is told while it is lost.
+struct ThrowingSink : WaitingSink {
+  using WaitingSink::WaitingSink;
+  std::atomic<int> failures{0};
+  void on_online(bool now) override {
+    if (!now) throw std::runtime_error("no room for a message");
+  }
+  void on_failure(const Error& /*error*/) override {
+    ++failures;
+    throw 1;
+  }
+  void on_loss(const std::string& /*text*/) override { throw 2; }
+  void on_report(Level level, const std::string& /*text*/) override {
+    if (level != Level::info) throw std::bad_alloc();
+  }
+};
+
+TEST(DeviceThread, It_lives_on_though_the_sink_throws_again_when_it_is_told_that_the_device_is_lost) {
+  auto builder = MapBuilder().coil("a", 1);
+  builder.head().polling.rate = 100;
+  const auto owned = builder.build();
+  FakeDevice device;
+  std::atomic<int> reads{0};
+  device.during_read = [&device, &reads] {
+    if (++reads == 2) device.next_errors.push_back(TransportFailure{"reset"});
+  };
+  Link link(test::share(device), {}, {});
+  ThrowingSink sink(owned->map());
+  DeviceThread thread(owned->map(), Verify::off, no_map, link, sink.values, sink);
+  thread.start();
+  for (int i = 0; i < 2000 && reads < 4; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(thread.end());
+  EXPECT_GE(reads, 4) << "it was not connected again";
+  EXPECT_EQ(sink.failures, 1);
 }
 
 TEST(DeviceThread, It_ends_at_once_while_it_waits_to_connect_again) {

@@ -10,27 +10,6 @@
 
 namespace coupler::host {
 
-namespace {
-
-/// Then everything is polled over the next connection.
-constexpr int most_unheard_waits = 2;
-
-std::string loss_text(const Map& map, const Error& error, bool was_online) {
-  const std::string why = to_string(error);
-  if (is_unit_away(error))
-    return fmt::format("the gateway cannot reach unit {}: {}; trying again", map.connection.unit, why);
-  return was_online ? fmt::format("connection lost: {}; connecting again", why)
-                    : fmt::format("not connected: {}; trying again", why);
-}
-
-/// Returns the part of an error's text that tells it from others: the ids and bytes of a malformed reply
-/// differ each time.
-std::string_view kind_of(const Error& error, std::string_view text) {
-  return std::holds_alternative<BadFrame>(error) ? text.substr(0, text.find_first_of("0123456789")) : text;
-}
-
-}  // namespace
-
 Device::Device(const Map& map, Purpose purpose, MapLoader load, Link& link, ValueTable& values, Sink& sink)
     : map_(map),
       verify_(map.connection.is_broadcast() ? Verify::off : purpose.verify),
@@ -302,39 +281,6 @@ void Device::came_online() {
   if (const Health health = certificates_health(certificates, std::chrono::system_clock::now());
       health.level != Level::info)
     sink_.on_report(health.level, health.text);
-}
-
-void Device::lost(const Error& error) {
-  const State before = note(is_unit_away(error) ? DeviceEvent::away : DeviceEvent::lost);
-  const bool was_online = before == State::online;
-  if (listener_.has_heard())
-    unheard_waits_ = 0;
-  else if (before >= State::verified && listener_.is_active())
-    ++unheard_waits_;
-  else if (before >= State::verified)
-    unheard_waits_ = std::min(unheard_waits_, most_unheard_waits - 1);  // to be tried again, once
-  if (state_ == State::closed) link_.close();
-  retry_at_ = clock_.now() + backoff_.next();
-  listener_.stop();
-  writer_.disconnected(error);
-  const std::string why = to_string(error);
-  watchdog_.disconnected(why);
-  scheduler_.disconnected(why);
-  statistics_.offline(why);
-  values_.online(false);
-  answers_identity_.reset();  // it may be another device next time
-  if (was_online) {
-    identity_suffices_ = link_.replies() > replies_at_connect_;
-    sink_.on_online(false);
-  }
-  if (!ending_) sink_.on_failure(error);
-  const std::string_view kind = kind_of(error, why);
-  if (!ending_ && (was_online || kind != last_error_kind_)) {
-    const std::string text = loss_text(map_, error, was_online);
-    sink_.on_loss(text);
-    tell(Level::warning, text);
-  }
-  last_error_kind_ = kind;
 }
 
 void Device::tell(Level level, std::string text) {

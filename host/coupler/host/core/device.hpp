@@ -109,6 +109,9 @@ class Device {
  private:
   using State = DeviceState;
 
+  /// After so many unheard_waits_ everything is polled over the next connection.
+  static constexpr int most_unheard_waits = 2;
+
   bool is_verified() const { return state_ >= State::verified; }
   /// Returns the state before.
   State note(DeviceEvent event) { return std::exchange(state_, after(state_, event)); }

@@ -109,11 +109,9 @@ Time DeviceThread::attempt(Work work) {
 
 Time DeviceThread::give_up(const std::exception_ptr& thrown) {
   try {
-    std::rethrow_exception(thrown);
-  } catch (const std::exception& error) {
-    return device_.give_up(what_failed(error));
-  } catch (...) {
-    return device_.give_up("an exception of an unknown type");
+    return device_.give_up(what_failed(thrown));
+  } catch (...) {  // no memory for a text: the next step finds what is left to do
+    return Time::min();
   }
 }
 

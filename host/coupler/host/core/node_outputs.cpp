@@ -92,7 +92,11 @@ void NodeOutputs::on_written(std::uint32_t point) {
 }
 
 void NodeOutputs::lose(const std::string& reason) {
-  for (const Waiting& one : std::exchange(waiting_, {})) tell(one, Kind::unknown, {clock_.now(), {}}, reason);
+  while (!waiting_.empty()) {
+    const Waiting one = waiting_.front();
+    waiting_.erase(waiting_.begin());  // first: who is told may throw
+    tell(one, Kind::unknown, {clock_.now(), {}}, reason);
+  }
 }
 
 void NodeOutputs::on_change(const Change& change, std::uint64_t number, Stamp stamp) {
