@@ -5,11 +5,19 @@
 #include <sys/eventfd.h>
 
 #include <array>
+#include <cerrno>
+#include <system_error>
 
 namespace coupler::host {
 namespace {
 
-int event_descriptor() { return ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK); }
+int event_descriptor() {
+  const int fd = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  if (fd >= 0) return fd;
+  throw std::system_error(errno, std::generic_category(),
+                          "no file descriptor is left to wake a thread; look at the limit (ulimit -n, "
+                          "LimitNOFILE= of a service)");
+}
 
 }  // namespace
 

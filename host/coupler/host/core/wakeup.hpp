@@ -40,7 +40,8 @@ class Deadline {
   std::chrono::nanoseconds at_;
 };
 
-/// Something that happens once. Any thread may set it.
+/// Something that happens once. Any thread may set it. To make one throws std::system_error if no file
+/// descriptor is left; so it does to make a Wakeup.
 class Event {
  public:
   Event();

@@ -46,20 +46,16 @@ struct Lookup {
 /// The addresses of a host name or of a numeric address. Asking a name server cannot be interrupted, so a
 /// thread of its own does it; that thread is left behind when `interrupt` or the deadline comes first.
 Result<Addresses> resolve(const std::string& host, std::uint16_t port, Deadline deadline,
-                          const Event& interrupt) {
+                          const Event& interrupt) try {
   const auto lookup = std::make_shared<Lookup>();
   lookup->host = host;
   lookup->service = fmt::to_string(port);
   lookup->run(AI_NUMERICHOST | AI_NUMERICSERV);
   if (lookup->status == EAI_NONAME) {
-    try {
-      std::thread([lookup] {
-        lookup->run(AI_NUMERICSERV);
-        lookup->done.set();
-      }).detach();
-    } catch (const std::system_error& error) {  // not the end of a driver: the next attempt may have one
-      return fail(NotConnected{what_failed(error), true});
-    }
+    std::thread([lookup] {
+      lookup->run(AI_NUMERICSERV);
+      lookup->done.set();
+    }).detach();
     std::array<pollfd, 2> wanted{{{lookup->done.fd(), POLLIN, 0}, {interrupt.fd(), POLLIN, 0}}};
     ::poll(wanted.data(), wanted.size(), deadline.left());
     if (interrupt.is_set()) return fail(NotConnected{"interrupted"});
@@ -67,6 +63,8 @@ Result<Addresses> resolve(const std::string& host, std::uint16_t port, Deadline 
   }
   if (lookup->status != 0) return fail(lookup_failure(host, lookup->status));
   return std::move(lookup->found);
+} catch (const std::system_error& error) {  // no thread, or no file descriptor; the next attempt may have one
+  return fail(NotConnected{what_failed(error), true});
 }
 
 /// 0, or the errno of the failure.
