@@ -55,7 +55,7 @@ class Histogram {
     return static_cast<std::int64_t>((step - exponent * parts + 1) << exponent);
   }
 
-  std::array<std::uint32_t, (exponents + 1) * parts> counts_{};
+  std::array<std::uint64_t, (exponents + 1) * parts> counts_{};
   std::uint64_t count_ = 0;
   Duration max_{0};
 };
