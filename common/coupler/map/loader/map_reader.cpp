@@ -178,7 +178,7 @@ std::optional<MapLayout> read_map(const Entry& file, const MapSource& source, Pl
   check_exponents(points, context);
   check_unreadable(unreadable, points, head.limits, context);
   const Areas whole = read_areas(top, "read_whole", defaults.addressing, context);
-  check_whole_areas(whole, unreadable, points, head.limits, context);
+  check_whole_areas(whole, unreadable, points, head, context);
   check_broadcast(top, points, head, context);
   check_reserved(reserved, points, context);
   head.security = read_security(top, points, head.connection.port, context);

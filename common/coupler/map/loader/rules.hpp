@@ -30,9 +30,9 @@ void check_unreadable(const Areas& areas, const DraftPoints& points, const Limit
                       const Context& context);
 
 /// Areas that are read whole fit into a request, also with the points that reach beyond them. None overlaps
-/// another one, or an unreadable area.
+/// another one, or an unreadable area. `head` has the limits and the coupler's watchdog.
 void check_whole_areas(const Areas& whole, const Areas& unreadable, const DraftPoints& points,
-                       const Limits& limits, const Context& context);
+                       const Map& head, const Context& context);
 
 /// To a broadcast points are written, and nothing is read.
 void check_broadcast(const Reader& top, const DraftPoints& points, const Map& head, const Context& context);

@@ -46,10 +46,24 @@ void check_point(const DraftPoint& draft, const Areas& whole, const Limits& limi
                          "end the area where the point begins or ends", {{touched->at, "the area is here"}});
 }
 
+/// Returns whether the host reads something in it for the coupler's watchdog. What it only writes does not
+/// count.
+bool has_watchdog(const Area& area, const WatchdogSequences& watchdog) {
+  using Write = WatchdogSequences::Write;
+  const auto is_here = [&area](const Write& place) {
+    return place.table == area.table && area.range.contains(place.address);
+  };
+  const auto is_read_here = [&](const Write& step) { return step.if_different && is_here(step); };
+  if (watchdog.alarm && is_here(*watchdog.alarm)) return true;
+  return std::any_of(watchdog.arm.begin(), watchdog.arm.end(), is_read_here) ||
+         std::any_of(watchdog.reset.begin(), watchdog.reset.end(), is_read_here);
+}
+
 }  // namespace
 
 void check_whole_areas(const Areas& whole, const Areas& unreadable, const DraftPoints& points,
-                       const Limits& limits, const Context& context) {
+                       const Map& head, const Context& context) {
+  const Limits& limits = head.limits;
   for (const Area& area : whole) {
     const std::uint32_t most = most_in_a_read(area.table, limits);
     if (area.range.count() > most)
@@ -60,7 +74,8 @@ void check_whole_areas(const Areas& whole, const Areas& unreadable, const DraftP
               ? fmt::format("make it smaller; the device's limit is 'limits: {{{}: ...}}'",
                             holds_bits(area.table) ? "read_bits" : "read_registers")
               : "make it smaller: no reply has room for more");
-    if (std::none_of(points.begin(), points.end(), [&](const DraftPoint& draft) {
+    if (!has_watchdog(area, head.coupler_watchdog) &&
+        std::none_of(points.begin(), points.end(), [&](const DraftPoint& draft) {
           return draft.point.table == area.table && draft.placed &&
                  read_range(draft.point).overlaps(area.range);
         }))

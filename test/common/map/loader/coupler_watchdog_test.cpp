@@ -77,6 +77,23 @@ TEST(CouplerWatchdog, Moxa_shows_an_alarm_in_a_coil_and_is_armed_elsewhere) {
   EXPECT_FALSE(watchdog.refusal);
 }
 
+TEST(CouplerWatchdog, What_is_read_of_it_makes_an_area_that_is_read_whole_useful) {
+  load_with(
+      "preset: moxa_e1200\nwatchdog: {timeout: 2s}\nread_whole: [{table: coils, from: 4144, to: 4151}]");
+  load_with(
+      "preset: beckhoff_bk9000\nwatchdog: {timeout: 1s}\n"
+      "read_whole: [{table: holding_registers, from: 4384, to: 4387}]");
+  const std::string only_written =
+      "preset: wago_750\nwatchdog: {timeout: 1s}\nread_whole: [{table: holding_registers, from: 4096, to: "
+      "4103}]\n";
+  const std::string unused = "preset: moxa_e1200\nread_whole: [{table: coils, from: 4144, to: 4151}]\n";
+  for (const std::string& top : {only_written, unused})
+    EXPECT_NE(test::text_of(test::load_with_lock(map_of("coils", "valve: 1", top), LockUse::read).diagnostics)
+                  .find("no point is in this area of 'read_whole'"),
+              std::string::npos)
+        << top;
+}
+
 TEST(CouplerWatchdog, The_map_says_which_register_a_plc_watches) {
   const auto feed = [](const std::string& top, const std::string& heartbeat) {
     const std::string watchdog = "preset: plc\nwatchdog: {timeout: 1s, heartbeat: " + heartbeat + "}";
