@@ -10,6 +10,7 @@
 #include <new>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include "coupler/host/core/write.hpp"
 #include "test/fakes/map_builder.hpp"
@@ -131,6 +132,37 @@ TEST(DeviceThread, Every_write_has_a_result_when_it_ends) {
     thread.write(write);
   }
   EXPECT_EQ(ticket.wait().outcome, WriteResult::Outcome::dropped);
+}
+
+/// Counts its results, and makes the write once more for each of the first two.
+struct AgainAndAgain : WriteListener {
+  explicit AgainAndAgain(DeviceThread& of) : thread(of) {}
+  DeviceThread& thread;
+  std::vector<WriteResult::Outcome> outcomes;
+  void write() {
+    Write write;
+    write.listener = this;
+    thread.write(write);
+  }
+  void on_result(const WriteResult& result) override {
+    outcomes.push_back(result.outcome);
+    if (outcomes.size() < 3) write();
+  }
+};
+
+TEST(DeviceThread, A_write_has_a_result_also_after_its_end) {
+  const auto owned = MapBuilder().coil("a", 1).build();
+  FakeDevice device;
+  Link link(test::share(device), {}, {});
+  WaitingSink sink(owned->map());
+  DeviceThread thread(owned->map(), Verify::off, no_map, link, sink.values, sink);
+  AgainAndAgain listener(thread);
+  thread.start();
+  thread.end();
+  listener.write();
+  EXPECT_THAT(listener.outcomes,
+              testing::ElementsAre(WriteResult::Outcome::dropped, WriteResult::Outcome::dropped,
+                                   WriteResult::Outcome::dropped));
 }
 
 /// Throws whatever it is told while it is lost.

@@ -58,6 +58,9 @@ class Device {
   /// Counts a value that is not valid for its point, and reports it to the listener.
   void refuse(const Write& write, std::string_view why) { writer_.refuse(write, why); }
 
+  /// Drops what is queued. Any thread may call it after stop().
+  void drop_all() { writer_.drop_all(); }
+
   /// See Writer.
   void report_held_back() {
     writer_.report_held_back();

@@ -51,6 +51,7 @@ void DeviceThread::await_stop() {
 
 void DeviceThread::write(const Write& write) {
   device_.push(write);
+  if (is_over_) return device_.drop_all();
   if (owner_ == std::this_thread::get_id()) return;  // the step that is being made sees it at its end
   const std::unique_lock turn(turn_, std::try_to_lock);
   if (!turn || !send_now()) link_.wake();
@@ -144,6 +145,11 @@ void DeviceThread::run() {
     ended_safely_ = !ends_safely_;
     attempt([this] {
       ended_safely_ = device_.stop();
+      return Time::max();
+    });
+    is_over_ = true;  // first: what comes now is dropped by the one who makes it, or here
+    attempt([this] {
+      device_.drop_all();
       return Time::max();
     });
   }

@@ -117,6 +117,7 @@ class DeviceThread {
   std::exception_ptr thrown_;  ///< by another thread while it held turn_
   std::atomic<bool> stopping_{false};
   std::atomic<bool> is_ending_{false};    ///< the thread only sets outputs to their safe values
+  std::atomic<bool> is_over_{false};      ///< nothing is sent any more
   std::atomic<std::thread::id> owner_{};  ///< the thread that holds turn_ while it calls the sink
   std::promise<void> stopped_;
   bool ended_safely_ = true;  ///< valid once the thread has ended

@@ -93,6 +93,9 @@ class Writer {
   void remember(const Write& write);
   /// Reports a result for all that was sent or queued, because the connection has ended.
   void disconnected(const Error& why);
+  /// Drops what has been queued since, because the program ends. Any thread may call it, once nothing is sent
+  /// any more.
+  void drop_all();
   /// Does what `on_shutdown` says, before the connection is closed. Returns false if an output should have
   /// its safe value but does not.
   bool shut_down(bool connected);

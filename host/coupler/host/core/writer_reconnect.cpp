@@ -138,6 +138,13 @@ void Writer::disconnected(const Error& why) {
   while (const auto write = queue_.take()) drop(*write);
 }
 
+void Writer::drop_all() {
+  while (const auto write = queue_.take()) {
+    queue_.settled(write->point);
+    tell(*write, {Outcome::dropped, std::nullopt, "the driver ends"});
+  }
+}
+
 void Writer::remember(const Write& write) {
   if (!restores(write)) return;
   Write& value = last_written_[write.point];
