@@ -134,6 +134,34 @@ TEST(DeviceThread, Every_write_has_a_result_when_it_ends) {
   EXPECT_EQ(ticket.wait().outcome, WriteResult::Outcome::dropped);
 }
 
+/// Throws when it is told what became of a scheduled write.
+struct NoOutcomes : WaitingSink {
+  using WaitingSink::WaitingSink;
+  void on_scheduled(const ScheduledOutcome& /*told*/) override { throw std::bad_alloc(); }
+};
+
+TEST(DeviceThread, A_call_is_answered_though_the_sink_throws_meanwhile) {
+  const auto owned = MapBuilder().command("a", 1).build();
+  FakeDevice device;
+  Link link(test::share(device), {}, {});
+  NoOutcomes sink(owned->map());
+  DeviceThread thread(owned->map(), Verify::off, no_map, link, sink.values, sink);
+  thread.start();
+  ScheduledWrite what;
+  std::uint32_t number = 0;
+  do {  // until it is connected
+    what.due = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    number = thread.schedule(what).get().number;
+  } while (number == 0);
+  auto cancelled = thread.cancel_scheduled(number);
+  ASSERT_EQ(cancelled.wait_for(std::chrono::seconds(20)), std::future_status::ready);
+  try {
+    EXPECT_EQ(cancelled.get().text, "it may or may not be carried out: std::bad_alloc");
+  } catch (const std::future_error&) {
+    FAIL() << "it has no answer";
+  }
+}
+
 /// Counts its results, and makes the write once more for each of the first two.
 struct AgainAndAgain : WriteListener {
   explicit AgainAndAgain(DeviceThread& of) : thread(of) {}

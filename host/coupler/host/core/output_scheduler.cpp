@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "coupler/base/what_failed.hpp"
 #include "coupler/map/typed_value.hpp"
 #include "coupler/modbus/scheduled_output.hpp"
 
@@ -16,6 +19,7 @@ namespace {
 using modbus::Exception;
 
 constexpr auto the_driver_ends = "the driver ends";
+constexpr std::string_view in_doubt = "it may or may not be carried out: ";
 constexpr auto made_safe = "safe values have been written meanwhile; ask again if it is still wanted";
 
 std::string refusal(modbus::Exception code) {
@@ -34,6 +38,21 @@ std::string refusal(modbus::Exception code) {
     case Exception::server_device_busy:
       return what + ": too many outputs are scheduled there; ask again when one of them is over";
     default: return what;
+  }
+}
+
+/// Makes an answer for a call, which has one then whatever throws.
+template <class Answer, class F>
+Result<> answered(std::promise<Answer>& to, F make) {
+  try {
+    return make();
+  } catch (...) {
+    const Answer unknown{{}, std::string(in_doubt) + what_failed(std::current_exception())};
+    try {
+      to.set_value(unknown);
+    } catch (const std::future_error&) {  // it has one
+    }
+    throw;
   }
 }
 
@@ -75,12 +94,13 @@ std::uint32_t OutputScheduler::accept(const ScheduledWrite& what, bool by_device
 
 Result<> OutputScheduler::step(const ChangeListener& listener) {
   if (auto call = cancels_.take_one_of([](std::uint32_t) { return true; })) {
-    Result<> done = answer_cancel(call->what, call->answer, listener);
+    Result<> done = answered(call->answer, [&] { return answer_cancel(call->what, call->answer, listener); });
     note();
     return done;
   }
   auto call = calls_.take_one_of([this](const AskedSchedule& asked) { return is_next(asked); });
-  Result<> done = call ? answer(call->what.what, call->answer, listener) : Result<>{};
+  Result<> done;
+  if (call) done = answered(call->answer, [&] { return answer(call->what.what, call->answer, listener); });
   note();
   return done;
 }
@@ -103,7 +123,7 @@ Result<> OutputScheduler::answer(const ScheduledWrite& what, std::promise<Schedu
   if (can_node(what, listener)) {
     const Result<std::optional<ScheduleAnswer>> given = give_to_node(what, listener);
     if (!given) {
-      to.set_value({0, "it may or may not be carried out: " + to_string(given.error())});
+      to.set_value({0, std::string(in_doubt) + to_string(given.error())});
       return tl::make_unexpected(given.error());
     }
     if (*given) {
@@ -191,7 +211,7 @@ Result<> OutputScheduler::answer_cancel(std::uint32_t number, std::promise<CallA
     return {};
   }
   if (exception_in(cancelled.error()) == nullptr || is_unit_away(cancelled.error())) {
-    to.set_value({false, "it may or may not be carried out: " + to_string(cancelled.error())});
+    to.set_value({false, std::string(in_doubt) + to_string(cancelled.error())});
     return cancelled;
   }
   to.set_value(
