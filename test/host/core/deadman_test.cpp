@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <future>
+#include <new>
 #include <utility>
 
 #include "test/fakes/map_builder.hpp"
@@ -26,6 +27,11 @@ struct DeadmanTest : test::DeviceTest {
       point.safe = Safe::on;
       point.safe_value = crawl;
       point.values = names;
+    });
+    builder.add(Table::holding_registers, "lamp", 20, Type::UINT, [&](Point& point) {
+      point.access = Access::write;
+      point.safe = Safe::on;
+      point.safe_value = stop;
     });
     owned = builder.build();
     make_sink();
@@ -145,6 +151,29 @@ TEST_F(DeadmanTest, A_deadman_value_that_a_safe_value_supersedes_is_written_if_t
     run_for(milliseconds(2000));
     EXPECT_EQ(speed(), 1);
   }
+}
+
+struct ThrowingListener : WriteListener {
+  void on_result(const WriteResult& /*result*/) override { throw std::bad_alloc(); }
+};
+
+TEST_F(DeadmanTest,
+       A_deadman_value_that_a_safe_value_supersedes_is_written_if_a_listener_throws_before_that) {
+  start_online();
+  push("speed", 500);
+  run_for(milliseconds(100));
+  ThrowingListener throwing;
+  std::future<CallAnswer> asked;
+  during_wait_for_turn([this] { EXPECT_THROW(run_for(milliseconds(200)), std::bad_alloc); },
+                       [&] {
+                         push("lamp", 1, &throwing);
+                         asked = engine->make_safe();
+                       });
+  engine->give_up("no memory");
+  ASSERT_TRUE(asked.valid());
+  EXPECT_FALSE(asked.get().success);
+  run_for(milliseconds(2000));
+  EXPECT_EQ(speed(), 1);
 }
 
 TEST_F(DeadmanTest, A_deadman_value_whose_unit_is_away_is_written_when_it_is_back) {

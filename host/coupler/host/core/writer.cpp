@@ -249,13 +249,24 @@ Result<> Writer::verify(const Write& write, const Result<>& connection) {
   return read || !is_unit_away(read.error()) ? Result<>{} : read;
 }
 
+/// Returns the points whose deadman values waited. If a listener throws, they are due again.
+std::vector<std::uint32_t> Writer::supersede_for_safe() {
+  std::vector<std::uint32_t> deadmen;
+  try {
+    while (const auto write = queue_.take_one_of(is_safe_point_)) {
+      if (write->of_deadman) deadmen.push_back(write->point);
+      settle(*write, {Outcome::superseded});
+    }
+  } catch (...) {
+    for (const std::uint32_t point : deadmen) deadmen_.retry(point, Time());
+    throw;
+  }
+  return deadmen;
+}
+
 Result<> Writer::make_safe() {
   const std::size_t asked = safe_calls_.size();
-  std::vector<std::uint32_t> deadmen;  // their values waited
-  while (const auto write = queue_.take_one_of(is_safe_point_)) {
-    if (write->of_deadman) deadmen.push_back(write->point);
-    settle(*write, {Outcome::superseded});
-  }
+  const std::vector<std::uint32_t> deadmen = supersede_for_safe();
   const auto rejected = write_safe_values();
   if (!rejected) {
     for (const std::uint32_t point : deadmen)
