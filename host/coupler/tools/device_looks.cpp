@@ -28,12 +28,14 @@ State state_of(const host::ValueTable::Value& value) {
 }  // namespace
 
 DeviceLooks::DeviceLooks(const Map& map, const std::vector<bool>& chosen, const host::ValueTable& values,
-                         const host::Clock& clock, std::function<void(Snapshot)> take)
+                         const host::Clock& clock, std::function<void(Snapshot)> take,
+                         std::function<void()> on_silence)
     : map_(map),
       chosen_(chosen),
       values_(values),
       clock_(clock),
       take_(std::move(take)),
+      on_silence_(std::move(on_silence)),
       told_(map.points.size()) {}
 
 /// A look can take several cycles, because a request that ended an earlier connection is put off until the
@@ -96,6 +98,8 @@ void DeviceLooks::on_failure(const host::Error& error) {
   if (!may_be_a_request || !std::exchange(has_chance_, false)) {
     take_(look(error));
     began_ = clock_.now();
+  } else {
+    tell_of_silence();
   }
   begin_look();
   identity_.reset();
@@ -103,7 +107,13 @@ void DeviceLooks::on_failure(const host::Error& error) {
   has_looked_ = false;
 }
 
+void DeviceLooks::tell_of_silence() {
+  if (const auto tell = std::exchange(on_silence_, nullptr)) tell();
+}
+
+/// Without an identity the first note is that a device does not answer the request for it.
 void DeviceLooks::on_note(host::Level /*level*/, const std::string& text) {
+  if (!identity_ && !has_looked_ && notes_.empty()) tell_of_silence();
   if (std::find(notes_.begin(), notes_.end(), text) == notes_.end()) notes_.push_back(text);
 }
 

@@ -20,9 +20,11 @@ namespace coupler::tools {
 class DeviceLooks : public host::Sink {
  public:
   /// `map` is the map that the device's thread uses, and `chosen` has an element for each of its points.
-  /// All references must outlive the object. `take` is called with each snapshot in the device's thread.
-  DeviceLooks(const Map& map, const std::vector<bool>& chosen, const host::ValueTable& values,
-              const host::Clock& clock, std::function<void(Snapshot)> take);
+  /// All references must outlive the object. `take` is called with each snapshot in the device's thread;
+  /// there, too, `on_silence` when the first request had no answer, which is no failure yet.
+  DeviceLooks(
+      const Map& map, const std::vector<bool>& chosen, const host::ValueTable& values,
+      const host::Clock& clock, std::function<void(Snapshot)> take, std::function<void()> on_silence = [] {});
 
   void on_values(Span<const std::uint32_t> /*points*/) override {}
   void on_told(std::uint32_t point) override;
@@ -34,6 +36,7 @@ class DeviceLooks : public host::Sink {
   void on_note(host::Level level, const std::string& text) override;
 
  private:
+  void tell_of_silence();
   Snapshot look(const std::optional<host::Error>& error) const;
   Reading read(std::uint32_t point, const std::optional<host::Error>& error) const;
   bool is_from_this_look(const host::ValueTable::Value& value) const;
@@ -46,6 +49,7 @@ class DeviceLooks : public host::Sink {
   const host::ValueTable& values_;
   const host::Clock& clock_;
   const std::function<void(Snapshot)> take_;
+  std::function<void()> on_silence_;  ///< empty: it was called
   host::WallTime wall_;
   host::Time began_ = host::Time::min();             ///< the time at which this look began
   int cycles_ = 0;                                   ///< the number of cycles in this look

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -59,6 +60,9 @@ void put_line(const std::string& line) {
 void tell(const std::string& note) {
   std::fputs(fmt::format("coupler dump: note: {}\n", printable_lines(note)).c_str(), stderr);
 }
+
+/// A device that hangs takes several timeouts, and somebody waits.
+void tell_of_silence() { tell("no answer so far; the device is asked in other ways"); }
 
 /// Returns false while standard output is blocked because its reader does not read.
 bool is_taken() {
@@ -144,11 +148,13 @@ class SnapshotQueue {
 /// A device that a thread of its own reads.
 class ReadDevice {
  public:
-  ReadDevice(const Map& map, const std::vector<bool>& chosen, SnapshotQueue& queue)
+  ReadDevice(const Map& map, const std::vector<bool>& chosen, SnapshotQueue& queue,
+             std::function<void()> on_silence)
       : link_(host::make_link(map.connection, map.limits)),
         values_(map),
-        looks_(map, chosen, values_, link_.clock(),
-               [&queue](Snapshot snapshot) { queue.push(std::move(snapshot)); }),
+        looks_(
+            map, chosen, values_, link_.clock(),
+            [&queue](Snapshot snapshot) { queue.push(std::move(snapshot)); }, std::move(on_silence)),
         thread_(map, {map.verify, true}, load_served_map, link_, values_, looks_) {
     for (std::uint32_t point = 0; point < map.points.size(); ++point)
       if (!chosen[point]) thread_.want(point, false);
@@ -170,7 +176,7 @@ Exit once(const Map& original, const std::vector<bool>& chosen, bool json) {
   Map map = looking.map();
   map.changes = false;
   SnapshotQueue queue;
-  ReadDevice device(map, chosen, queue);
+  ReadDevice device(map, chosen, queue, tell_of_silence);
   const Snapshot now = *queue.next();
   device.end();
   const bool nothing = std::none_of(now.readings.begin(), now.readings.end(), [](const Reading& reading) {
@@ -215,8 +221,8 @@ Exit again_and_again(const Map& original, const std::vector<bool>& chosen, bool 
   const Map& map = looking.map();
   SnapshotQueue queue;
   const Interruption interruption([&] { queue.stop(); });
-  ReadDevice device(map, chosen, queue);
   const bool terminal = !json && is_screen();
+  ReadDevice device(map, chosen, queue, terminal ? [] {} : tell_of_silence);
   if (terminal) std::fputs(begin_frames, stdout);
   watch(queue, map, json ? show_json : terminal ? show_frame : show_changes);
   if (terminal) put_line(end_frames);

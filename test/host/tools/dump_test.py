@@ -71,6 +71,17 @@ class Dump(unittest.TestCase):
             where = f"127.0.0.1:{place.getsockname()[1]}"
             self.refused(3, f"tcp://{where}/1: ", "cell.yaml", "--at", where)
 
+    def test_a_device_that_hangs_is_told_of_before_all_attempts_are_over(self):
+        (self.folder / "cell.yaml").write_text(MAP + "timeout: 500ms\n", encoding="utf-8")
+        with socket.create_server(("127.0.0.1", 0)) as server:  # the kernel accepts, and nobody answers
+            where = f"127.0.0.1:{server.getsockname()[1]}"
+            done = self.dump("cell.yaml", "--at", where)
+        self.assertEqual(done.returncode, 3)
+        note, error = done.stderr.splitlines()
+        self.assertEqual(note, "coupler dump: note: no answer so far; the device is asked in other ways")
+        self.assertIn("the connection was accepted, but unit 1 does not answer; check that the device runs, and that 'unit' is "
+                      "its unit id: a node answers to its own", error)
+
     def test_help_has_an_example(self):
         done = self.dump("--help")
         self.assertEqual(done.returncode, 0)

@@ -91,12 +91,11 @@ std::string silence_text(const Map& known, const Error& error) {
         "(a client: Options::verify)",
         to_string(error));
   return fmt::format(
-      "{}, but unit {} does not answer the request for its identity: {}; check that the device runs, and "
-      "that 'unit' is its unit id. If it is a foreign device that ignores addresses it does not have, or "
-      "answers nonsense, give its map 'verify: off', or start with --verify off (a client: "
-      "Options::verify)",
+      "{}, but unit {} does not answer the request for its identity: {}; {}. If it is a foreign device that "
+      "ignores addresses it does not have, or answers nonsense, give its map 'verify: off', or start with "
+      "--verify off (a client: Options::verify)",
       is_unit_away(error) ? "the gateway answers" : "the device accepts connections", known.connection.unit,
-      to_string(error));
+      to_string(error), silent_unit_remedy);
 }
 
 Result<Identity> check_identity(Link& link, const Map& known, const MapLoader& load) {

@@ -42,6 +42,9 @@ constexpr auto superset_text = "the device has more points than this map; those 
 /// Returns what to do about a unit of an RTU line that stays silent.
 std::string line_remedy(const Connection& line);
 
+/// What to do about a device that accepts connections and answers nothing.
+constexpr auto silent_unit_remedy = "check that the device runs, and that 'unit' is its unit id";
+
 /// Returns why a device may not answer the request for its identity (a timeout, or a gateway that cannot
 /// reach it), and what to do.
 std::string silence_text(const Map& known, const Error& error);
