@@ -2,6 +2,7 @@
 #include "coupler/command_line/command_line.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <sstream>
 #include <utility>
@@ -15,21 +16,78 @@ namespace {
 
 int exit_status(int of_cli11) { return of_cli11 == 0 ? 0 : 2; }
 
-/// With the version, if it does not know an argument.
-CLI::Error told(const CLI::App& program, const CLI::ParseError& error) {
-  std::string what = error.what();
-  const std::string version = program.version();
-  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) && !version.empty())
-    what += " (this is " + version + ", and a newer one may know it)";
-  return {error.get_name(), what, error.get_exit_code()};
+std::string or_newer(const std::string& version) {
+  return version.empty() ? std::string() : " (this is " + version + ", and a newer one may know it)";
 }
 
-/// CLI11 would only say that a command is required.
-void refuse_unknown_command(const CLI::App& program, int argc, const char* const* argv) {
-  const std::string first = argc > 1 ? argv[1] : "-";
-  const auto is_named = [&first](const CLI::App* command) { return command->get_name() == first; };
-  if (first[0] != '-' && program.get_subcommands(is_named).empty())
-    throw CLI::ParseError("'" + first + "' is not a command", CLI::ExitCodes::ExtrasError);
+/// The program, or its command, that has arguments left which it does not know.
+const CLI::App* with_extras(const CLI::App& app) {
+  if (!app.remaining().empty()) return &app;
+  for (const CLI::App* command : app.get_subcommands())
+    if (const CLI::App* found = with_extras(*command)) return found;
+  return nullptr;
+}
+
+/// "--unit" as help texts name such a value: "UNIT".
+std::string placeholder(std::string_view option) {
+  std::string word(option.substr(2));
+  for (char& c : word)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  return word;
+}
+
+bool has_word(const std::string& text, const std::string& word) {
+  const auto is_letter = [&text](std::size_t at) {
+    return at < text.size() && std::isalpha(static_cast<unsigned char>(text[at])) != 0;
+  };
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
+    if ((at == 0 || !is_letter(at - 1)) && !is_letter(at + word.size())) return true;
+  return false;
+}
+
+/// The option of `app` that was meant by "--word" or "--word=value"; empty if none is near.
+std::string meant_option(const CLI::App& app, const std::string& given, Nearest nearest) {
+  const std::string_view word = std::string_view(given).substr(0, given.find('='));
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back(name);
+  const std::string_view near =
+      nearest(word.substr(2), std::vector<std::string_view>(names.begin(), names.end()));
+  if (!near.empty()) return "--" + std::string(near);
+  const std::string part = placeholder(word);
+  if (part.empty()) return {};
+  for (const CLI::Option* option : app.get_options())
+    if (!option->get_lnames().empty() && has_word(option->get_description(), part))
+      return "--" + option->get_lnames()[0] + ", which has the " + part;
+  return {};
+}
+
+/// What to propose for the first of the arguments that is near to something; empty if none is.
+std::string proposal(const CLI::App& app, const std::vector<std::string>& extras, Nearest nearest,
+                     const std::string& option_of_stray) {
+  for (const std::string& extra : extras) {
+    if (extra.size() < 3 || extra.compare(0, 2, "--") != 0) continue;
+    if (const std::string meant = meant_option(app, extra, nearest); !meant.empty()) return meant;
+  }
+  const bool is_stray = extras.size() == 1 && extras[0][0] != '-';
+  return is_stray && !option_of_stray.empty() ? option_of_stray + ' ' + extras[0] : std::string();
+}
+
+/// With what was meant, or else with the version, if it does not know an argument.
+CLI::Error told(const CLI::App& program, const CLI::ParseError& error, Nearest nearest,
+                const std::string& option_of_stray) {
+  std::string what = error.what();
+  const CLI::App* app = with_extras(program);
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) && app != nullptr) {
+    const std::vector<std::string> extras = app->remaining();
+    what = extras.size() > 1 ? "The following arguments were not expected:"
+                             : "The following argument was not expected:";
+    for (const std::string& extra : extras) what += ' ' + extra;  // CLI11 has them from the last to the first
+    const std::string meant =
+        nearest == nullptr ? std::string() : proposal(*app, extras, nearest, option_of_stray);
+    what += meant.empty() ? or_newer(program.version()) : "; did you mean " + meant + '?';
+  }
+  return {error.get_name(), what, error.get_exit_code()};
 }
 
 }  // namespace
@@ -111,12 +169,28 @@ void Program::explain(
   });
 }
 
+/// CLI11 would only say that a command is required.
+void Program::refuse_unknown_command(int argc, const char* const* argv) const {
+  const std::string first = argc > 1 ? argv[1] : "-";
+  if (first.empty() || first[0] == '-') return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : std::as_const(*app_).get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), first) != names.end()) return;
+  std::string what = "'" + first + "' is not a command";
+  const std::string_view near =
+      nearest_ == nullptr ? std::string_view()
+                          : nearest_(first, std::vector<std::string_view>(names.begin(), names.end()));
+  what += near.empty() ? or_newer(app_->version()) : "; did you mean '" + std::string(near) + "'?";
+  throw CLI::ParseError(what, CLI::ExitCodes::ExtrasError);
+}
+
 std::optional<int> Program::parse(int argc, const char* const* argv) {
   try {
-    if (app_->get_require_subcommand_min() > 0) refuse_unknown_command(*app_, argc, argv);
+    if (app_->get_require_subcommand_min() > 0) refuse_unknown_command(argc, argv);
     app_->parse(argc, argv);
   } catch (const CLI::ParseError& stopped) {
-    return exit_status(app_->exit(told(*app_, stopped)));
+    return exit_status(app_->exit(told(*app_, stopped, nearest_, option_of_stray_)));
   }
   return std::nullopt;
 }
@@ -128,7 +202,7 @@ std::optional<int> Program::parse(std::vector<std::string> arguments, std::strin
   } catch (const CLI::ParseError& stopped) {
     std::ostringstream out;
     std::ostringstream err;
-    const int status = exit_status(app_->exit(told(*app_, stopped), out, err));
+    const int status = exit_status(app_->exit(told(*app_, stopped, nearest_, option_of_stray_), out, err));
     text += out.str() + err.str();
     return status;
   }

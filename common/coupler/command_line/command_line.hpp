@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace CLI {
@@ -77,6 +78,9 @@ class Command {
   CLI::App* app_;
 };
 
+/// The candidate that was most likely meant by the word; empty if none is near.
+using Nearest = std::string_view (*)(std::string_view word, const std::vector<std::string_view>& candidates);
+
 /// footer() and explain() hold for every command that is added after them.
 class Program : public Command {
  public:
@@ -86,6 +90,10 @@ class Program : public Command {
   Program& operator=(const Program&) = delete;
 
   void version(const std::string& text);
+  /// Proposes the word that a wrong option or command is near to; `nearest` finds it, or is empty.
+  void propose(Nearest nearest) { nearest_ = nearest; }
+  /// Proposes this option for a stray argument: "--map".
+  void stray_is_of(const std::string& option) { option_of_stray_ = option; }
   /// The user has to call one of the commands that are added.
   Command add_command(const std::string& name, const std::string& description);
   /// The message after a wrong call; `command`: "coupler check".
@@ -98,7 +106,11 @@ class Program : public Command {
   std::optional<int> parse(std::vector<std::string> arguments, std::string& text);
 
  private:
+  void refuse_unknown_command(int argc, const char* const* argv) const;
+
   std::unique_ptr<CLI::App> owned_;
+  Nearest nearest_ = nullptr;
+  std::string option_of_stray_;
 };
 
 }  // namespace coupler::command_line

@@ -25,6 +25,7 @@
 #include "coupler/host/core/device_thread.hpp"
 #include "coupler/host/modbus/make_links.hpp"
 #include "coupler/map/diagnostic.hpp"
+#include "coupler/map/nearest.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/map/printable.hpp"
 #include "coupler/tools/commands.hpp"
@@ -245,13 +246,23 @@ tl::expected<std::vector<bool>, std::string> choose(const Map& map,
   return chosen;
 }
 
+std::string_view near_point(const Map& map, std::string_view word) {
+  std::vector<std::string_view> names;
+  for (const Point& point : map.points) names.push_back(point.name);
+  return nearest(word, names);
+}
+
 Exit run(const Arguments& arguments) {
   const auto device = get_device("dump", arguments.device);
   if (!device) return device.error();
   const auto chosen = choose(device->map, arguments.points);
-  if (!chosen)
-    return complain("dump", bad_call, fmt::format("no point matches '{}'", chosen.error()),
-                    fmt::format("`coupler export {} --to csv` lists their names", arguments.device.map));
+  if (!chosen) {
+    const std::string_view near = near_point(device->map, chosen.error());
+    return complain(
+        "dump", bad_call, fmt::format("no point matches '{}'", chosen.error()),
+        !near.empty() ? fmt::format("did you mean '{}'?", near)
+                      : fmt::format("`coupler export {} --to csv` lists their names", arguments.device.map));
+  }
   if (!arguments.watch) return once(device->map, *chosen, arguments.json);
   const std::chrono::duration<double> period(arguments.every > 0 ? arguments.every : usual_period);
   return again_and_again(device->map, *chosen, arguments.json,

@@ -13,6 +13,7 @@
 #include "coupler/base/standard_files.hpp"
 #include "coupler/base/version.hpp"
 #include "coupler/base/what_failed.hpp"
+#include "coupler/map/nearest.hpp"
 #include "coupler/tools/commands.hpp"
 
 static_assert(coupler::version == COUPLER_VERSION, "coupler/base/version.hpp and CMakeLists.txt differ");
@@ -22,6 +23,7 @@ int main(int argc, char** argv) {
   coupler::open_standard_files();
   Program program{"OpenCoupler: makes both sides of a Modbus coupler from one map.", "coupler"};
   program.version("coupler " COUPLER_VERSION);
+  program.propose(coupler::nearest);
   program.footer("Example:\n  coupler check device.yaml\n`coupler COMMAND --help` explains one command.");
   program.explain([](const std::string& command, const std::string& what) {
     return command + ": error: " + what + "; see `" + command + " --help`\n";

@@ -28,6 +28,14 @@ TEST(Arguments, The_origins_name_of_the_map_is_understood) {
   EXPECT_EQ(parse({"--mapping", "a.yaml"}).settings.map, "a.yaml");
 }
 
+TEST(Arguments, What_was_meant_by_an_unexpected_one_is_proposed) {
+  EXPECT_THAT(parse({"tx8.yaml"}).text, HasSubstr("not expected: tx8.yaml; did you mean --map tx8.yaml?"));
+  EXPECT_THAT(parse({"--mpa", "tx8.yaml"}).text,
+              HasSubstr("not expected: --mpa tx8.yaml; did you mean --map?"));
+  EXPECT_THAT(parse({"--mpa=tx8.yaml"}).text, HasSubstr("did you mean --map?"));
+  EXPECT_THAT(parse({"--speed", "5"}).text, HasSubstr("not expected: --speed 5 (this is coupler_driver"));
+}
+
 TEST(Arguments, It_is_known_whether_roslaunch_started_it) {
   EXPECT_FALSE(parse({"_map:=a.yaml", "__name:=io"}).by_roslaunch);
   EXPECT_TRUE(parse({"_map:=a.yaml", "__name:=io", "__log:=/tmp/io-1.log"}).by_roslaunch);

@@ -110,6 +110,13 @@ class TheCall(Cli):
         self.assertIn("--nope", said)
         self.assertRegex(said, r"\(this is coupler \d+\.\d+\.\d+, and a newer one may know it\)")
 
+    def test_with_a_slip_in_a_word_proposes_the_near_one(self):
+        self.assertIn("'dmp' is not a command; did you mean 'dump'?", self.refused("dmp", "map.yaml"))
+        self.assertIn("not expected: --wacth 2; did you mean --watch?", self.refused("dump", "map.yaml", "--wacth", "2"))
+        self.assertIn("not expected: --wacth=2; did you mean --watch?", self.refused("dump", "map.yaml", "--wacth=2"))
+        self.assertIn("not expected: --unit 3; did you mean --at, which has the UNIT?",
+                      self.refused("dump", "map.yaml", "--unit", "3"))
+
     def test_without_a_map_is_wrong(self):
         self.assertIn("MAP", self.refused("check"))
         self.assertIn("MAP", self.refused("generate", "--out", "out"))

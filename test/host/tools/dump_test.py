@@ -54,8 +54,10 @@ class Dump(unittest.TestCase):
         self.refused(2, "--at: the unit id '256'", "cell.yaml", "--at", "tcp://cell/256")
 
     def test_a_pattern_has_to_match_a_point(self):
-        self.refused(2, "no point matches 'lmap'; `coupler export cell.yaml --to csv` lists their names",
+        self.refused(2, "no point matches 'lmap'; did you mean 'lamp'?",
                      "cell.yaml", "--at", "localhost", "--points", "la*,lmap")
+        self.refused(2, "no point matches 'xyz*'; `coupler export cell.yaml --to csv` lists their names",
+                     "cell.yaml", "--at", "localhost", "--points", "la*,xyz*")
 
     def test_a_period_is_a_number_of_seconds(self):
         self.refused(2, "--watch", "cell.yaml", "--at", "localhost", "--watch", "often")

@@ -5,6 +5,7 @@
 
 #include "coupler/base/version.hpp"
 #include "coupler/command_line/command_line.hpp"
+#include "coupler/map/nearest.hpp"
 
 namespace coupler::device {
 
@@ -59,6 +60,7 @@ std::variant<Options, int> parse_options(int argc, char** argv, MapSource source
   command_line::Program app(
       "Serves the points of a map as a Modbus/TCP device: GPIO lines, or simulated ones.", program);
   app.version(program + " " + std::string(version));
+  app.propose(nearest);
   app.footer("Example, without hardware, for any Modbus client on this machine:\n  " + program + map +
              " --sim --port 1502" +
              (source == MapSource::argument

@@ -7,6 +7,7 @@
 
 #include "coupler/base/version.hpp"
 #include "coupler/command_line/command_line.hpp"
+#include "coupler/map/nearest.hpp"
 
 namespace coupler::host {
 namespace {
@@ -28,6 +29,8 @@ Options parse_options(std::vector<std::string> arguments, const Dialect& dialect
   Options result;
   command_line::Program app(description, "coupler_driver");
   app.version(fmt::format("coupler_driver {}", version));
+  app.propose(nearest);
+  app.stray_is_of("--map");
   app.footer(std::string(dialect.help));
   const std::vector<SettingKey>& keys = setting_keys();
   std::vector<std::string> texts(keys.size());
