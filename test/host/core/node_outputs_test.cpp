@@ -87,7 +87,8 @@ TEST_F(NodeOutputsTest, An_exception_is_told_with_its_remedy) {
   EXPECT_THAT(answer.text, HasSubstr("exception 06"));
   EXPECT_THAT(answer.text, HasSubstr("ask again when one of them is over"));
   code = modbus::Exception::illegal_data_value;
-  EXPECT_THAT(schedule("lamp", 1, seconds(1)).text, HasSubstr("its time had passed when the request arrived"));
+  EXPECT_THAT(schedule("lamp", 1, seconds(1)).text,
+              HasSubstr("its time had passed when the request arrived"));
   code = modbus::Exception::server_device_failure;
   EXPECT_THAT(schedule("lamp", 1, seconds(1)).text, HasSubstr("until it is reset"));
   code.reset();

@@ -96,7 +96,7 @@ std::optional<Line> first_without_colon(std::string_view text, const Line& here)
 
 SyntaxError text_behind(char quote, std::string_view text, std::size_t offset) {
   return {position_of(text, offset), "text follows the closing quote",
-          quote == '"' ? "of a quote in double quotes write '\\\"', or use single quotes"
+          quote == '"' ? "write a quote inside double quotes as '\\\"', or use single quotes"
                        : "double an apostrophe inside single quotes, or use double quotes"};
 }
 
