@@ -67,12 +67,14 @@ class Namesake(testing.RosTest):
     def test_another_node_at_the_port_of_one_that_was_killed_is_no_hindrance(self):
         with xmlrpc.server.SimpleXMLRPCServer(("localhost", 0), logRequests=False) as server:
             server.register_function(lambda _: [1, "", 1234], "getPid")
+            server.register_function(lambda _: [1, "", [["/rosout", "rosgraph_msgs/Log"]]], "getPublications")
             server.register_function(lambda *_: [1, "", 0], "shutdown")  # the master takes it for the one before
             threading.Thread(target=server.serve_forever, daemon=True).start()
             self.addCleanup(server.shutdown)
             uri = f"http://localhost:{server.server_address[1]}/"
             for node in (self.node, f"/{self.name}_other"):
-                rosgraph.Master(node).registerService(f"{node}/get_loggers", "rosrpc://localhost:1", uri)
+                for topic in ("/rosout", f"{node}/status"):
+                    rosgraph.Master(node).registerPublisher(topic, "std_msgs/Empty", uri)
             self.assertEqual(self.master.lookupNode(self.node), uri)
             self.started()
 

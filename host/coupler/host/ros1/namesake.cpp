@@ -1,65 +1,64 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros1/namesake.hpp"
 
-#include <XmlRpcClient.h>
-#include <XmlRpcDispatch.h>
 #include <XmlRpcException.h>
+#include <XmlRpcSocket.h>
 #include <ros/console.h>
 #include <ros/init.h>
 #include <ros/master.h>
-#include <ros/network.h>
 #include <ros/this_node.h>
 #include <ros/xmlrpc_manager.h>
 
-#include <cstdint>
+#include <cstdlib>
 #include <set>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "coupler/host/ros1/node_uri.hpp"
+#include "coupler/host/ros1/node_calls.hpp"
 #include "coupler/map/printable.hpp"
 
 namespace coupler::host {
 namespace {
 
-using XmlRpc::XmlRpcDispatch;
 using XmlRpc::XmlRpcValue;
 
-/// A node that hangs is waited for this often and, in seconds, this long.
-constexpr int most_looks = 20;
-constexpr double look = 0.05;
-
-/// Nothing if it does not answer.
-std::optional<int> process_of(const std::string& uri) {
-  std::string host;
-  std::uint32_t port = 0;
-  if (!ros::network::splitURI(uri, host, port)) return std::nullopt;
-  XmlRpc::XmlRpcClient client(host.c_str(), static_cast<int>(port), "/");
-  if (!client.executeNonBlock("getPid", own_name())) return std::nullopt;
-  XmlRpcDispatch dispatch;
-  dispatch.addSource(&client, XmlRpcDispatch::WritableEvent | XmlRpcDispatch::Exception);
-  for (int i = 0; i < most_looks; ++i) dispatch.work(look);  // no more once there is an answer
-  XmlRpcValue answer;
-  const bool answered = client.executeCheckDone(answer);
-  dispatch.removeSource(&client);
-  if (!answered || answer.getType() != XmlRpcValue::TypeArray || answer.size() != 3) return std::nullopt;
-  return static_cast<int&>(answer[2]);
+/// roscpp reads this variable in ros::start() only.
+void use_address_family() {
+  const char* const family = std::getenv("ROS_IPV6");
+  XmlRpc::XmlRpcSocket::s_use_ipv6_ = family != nullptr && std::string_view(family) == "on";
 }
 
-/// A node that was killed stays registered, and another one may have its port by now.
-bool is_of_another_name(const std::string& uri) {
-  XmlRpcValue response;
-  XmlRpcValue state;
-  if (!ros::master::execute("getSystemState", own_name(), response, state, false)) return false;
-  std::set<std::string> names;
-  for (int kind = 0; kind < state.size(); ++kind)
-    for (int i = 0; i < state[kind].size(); ++i)
-      for (int n = 0; n < state[kind][i][1].size(); ++n)
-        names.insert(static_cast<std::string&>(state[kind][i][1][n]));
-  names.erase(ros::this_node::getName());
-  for (const std::string& name : names)
-    if (uri_of(name) == uri) return true;
-  return false;
+/// Returns the topics that the master knows to be published by the node of this name and by no other one.
+std::set<std::string> topics_of_its_own() {
+  std::set<std::string> topics;
+  XmlRpcValue arguments, response, state;
+  arguments[0] = ros::this_node::getName();
+  if (!ros::master::execute("getSystemState", arguments, response, state, false)) return topics;
+  XmlRpcValue& published = state[0];  // [[topic, [node, …]], …]
+  for (int i = 0; i < published.size(); ++i) {
+    XmlRpcValue& nodes = published[i][1];
+    if (nodes.size() == 1 && static_cast<std::string&>(nodes[0]) == ros::this_node::getName())
+      topics.insert(static_cast<std::string&>(published[i][0]));
+  }
+  return topics;
+}
+
+/// Returns the process of the node of this name, if it is alive. One that was killed stays registered, and
+/// another node, even of another master, may have its port by now: that one has other topics.
+std::optional<int> process_of_namesake(const std::string& uri) {
+  std::vector<NodeCall> calls = {{uri, "getPid"}, {uri, "getPublications"}};
+  make(calls);
+  XmlRpcValue& process = calls[0].answer;
+  XmlRpcValue& published = calls[1].answer;
+  if (!process.valid() || !published.valid()) return std::nullopt;
+  const std::set<std::string> expected = topics_of_its_own();
+  bool is_it = expected.empty();
+  for (int i = 0; i < published.size(); ++i)
+    is_it = is_it || expected.count(static_cast<std::string&>(published[i][0])) > 0;
+  if (!is_it) return std::nullopt;
+  return static_cast<int&>(process);
 }
 
 /// What roscpp does, but with the remedy.
@@ -83,11 +82,12 @@ void shut_down(XmlRpcValue& arguments, XmlRpcValue& result) {
 
 std::optional<std::string> namesake_error() {
   const std::string& name = ros::this_node::getName();
+  use_address_family();
   try {
     const std::string uri = uri_of(name, true);
     if (uri.empty()) return std::nullopt;
-    const auto process = process_of(uri);
-    if (!process || is_of_another_name(uri)) return std::nullopt;
+    const auto process = process_of_namesake(uri);
+    if (!process) return std::nullopt;
     return fmt::format(
         "a node {} runs already (process {}, {}), and two of one name would end each other: nothing is "
         "started. Stop that one, or give this one another name: --name NAME, with device.launch name:=NAME",

@@ -1,44 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros1/topic_types.hpp"
 
-#include <XmlRpcClient.h>
-#include <XmlRpcDispatch.h>
 #include <XmlRpcException.h>
-#include <ros/init.h>
-#include <ros/network.h>
 
-#include <cstdint>
-#include <memory>
 #include <utility>
 
-#include "coupler/host/ros/program.hpp"
-#include "coupler/host/ros1/node_uri.hpp"
+#include "coupler/host/ros1/node_calls.hpp"
 
 namespace coupler::host {
 namespace {
 
-using XmlRpc::XmlRpcDispatch;
 using XmlRpc::XmlRpcValue;
-
-/// A node may hang, so there are this many waits for all answers together, of this many seconds each. The end
-/// of the driver is delayed by one of them at most.
-constexpr int most_waits = 20;
-constexpr double wait = 0.05;
-
 using Types = std::unordered_map<std::string, std::string>;
 
-/// A call that is under way.
-struct Call {
-  std::unique_ptr<XmlRpc::XmlRpcClient> client;
-  Types* types;
-};
-
-/// Reads [code, text, [[topic, type], …]]. Anything else is left out: a node of another make may answer it.
+/// Reads [[topic, type], …]. Anything else is left out: a node of another make may answer it.
 void read(XmlRpcValue& answer, Types& types) {
   try {
-    XmlRpcValue& list = answer[2];
-    for (int i = 0; i < list.size(); ++i)
-      types[static_cast<std::string&>(list[i][0])] = static_cast<std::string&>(list[i][1]);
+    for (int i = 0; i < answer.size(); ++i)
+      types[static_cast<std::string&>(answer[i][0])] = static_cast<std::string&>(answer[i][1]);
   } catch (const XmlRpc::XmlRpcException&) {
     return;  // what was read before it stays
   }
@@ -78,31 +57,19 @@ void TopicTypes::find_wanted(const std::vector<Endpoint*>& ends) {
   nodes_ = std::move(now);
 }
 
-/// All at the same time.
 void TopicTypes::ask() {
-  std::vector<Call> calls;  // outlives the dispatch, which refers to its clients
-  XmlRpcDispatch dispatch;
-  const XmlRpcValue arguments = own_name();
+  std::vector<NodeCall> calls;
+  std::vector<Types*> places;  // of the answers
   for (auto& [name, node] : nodes_) {
-    std::string host;
-    std::uint32_t port = 0;
-    if (!ros::network::splitURI(node.uri, host, port)) continue;
     for (const int which : {0, 1}) {
       if (!node.is_wanted[which]) continue;
-      auto client = std::make_unique<XmlRpc::XmlRpcClient>(host.c_str(), static_cast<int>(port), "/");
-      if (!client->executeNonBlock(which == 1 ? "getPublications" : "getSubscriptions", arguments)) continue;
-      dispatch.addSource(client.get(), XmlRpcDispatch::WritableEvent | XmlRpcDispatch::Exception);
-      calls.push_back({std::move(client), &node.types[which]});
+      calls.push_back({node.uri, which == 1 ? "getPublications" : "getSubscriptions"});
+      places.push_back(&node.types[which]);
     }
   }
-  if (calls.empty()) return;
-  for (int i = 0; i < most_waits && !Shutdown::requested && !ros::isShuttingDown(); ++i) dispatch.work(wait);
-  for (auto& [client, types] : calls) {
-    XmlRpcValue answer;
-    if (client->executeCheckDone(answer) && answer.getType() == XmlRpcValue::TypeArray && answer.size() == 3)
-      read(answer, *types);
-    dispatch.removeSource(client.get());
-  }
+  make(calls);
+  for (std::size_t i = 0; i < calls.size(); ++i)
+    if (calls[i].answer.valid()) read(calls[i].answer, *places[i]);
 }
 
 }  // namespace coupler::host
