@@ -54,6 +54,9 @@ std::string failure_without_descriptors() {
 }
 
 TEST(Wakeup, Without_a_file_descriptor_there_is_none_and_no_event_either) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer itself needs descriptors, to look at the exception";
+#endif
   for (const std::string& failure :
        {failure_without_descriptors<Wakeup>(), failure_without_descriptors<Event>()})
     EXPECT_EQ(failure,
