@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "coupler/device/analogue/latest_sample.hpp"
 #include "coupler/device/analogue/sampler.hpp"
 #include "test/device/analogue/fake_sysfs.hpp"
 #include "test/device/core/fake_log.hpp"
@@ -236,23 +237,23 @@ TEST(SamplingPeriod, Is_that_of_the_map_within_limits) {
 
 using Sample = tl::expected<double, int>;
 
-struct LatestSample : testing::Test {
-  LatestSample() { latest.begin(now); }
+struct LatestSampleTest : testing::Test {
+  LatestSampleTest() { latest.begin(now); }
   TimePoint now{std::chrono::hours(1)};
-  Latest latest;
+  LatestSample latest;
 };
 
-TEST_F(LatestSample, Is_not_there_before_the_first_conversion) {
+TEST_F(LatestSampleTest, Is_not_there_before_the_first_conversion) {
   EXPECT_EQ(Sample(tl::unexpected(EAGAIN)), latest.get(now));
 }
 
-TEST_F(LatestSample, Is_the_last_one) {
+TEST_F(LatestSampleTest, Is_the_last_one) {
   latest.put(1.5, now);
   latest.put(2.5, now);
   EXPECT_EQ(Sample(2.5), latest.get(now));
 }
 
-TEST_F(LatestSample, That_failed_is_an_error_until_one_succeeds) {
+TEST_F(LatestSampleTest, That_failed_is_an_error_until_one_succeeds) {
   latest.put(1.5, now);
   latest.put(tl::unexpected(EIO), now);
   EXPECT_EQ(Sample(tl::unexpected(EIO)), latest.get(now));
@@ -260,10 +261,10 @@ TEST_F(LatestSample, That_failed_is_an_error_until_one_succeeds) {
   EXPECT_EQ(Sample(2.5), latest.get(now));
 }
 
-TEST_F(LatestSample, Is_an_error_when_no_other_came_for_too_long) {
+TEST_F(LatestSampleTest, Is_an_error_when_no_other_came_for_too_long) {
   latest.put(1.5, now);
-  EXPECT_EQ(Sample(1.5), latest.get(now + Latest::timeout));
-  const TimePoint late = now + Latest::timeout + std::chrono::milliseconds(1);
+  EXPECT_EQ(Sample(1.5), latest.get(now + LatestSample::timeout));
+  const TimePoint late = now + LatestSample::timeout + std::chrono::milliseconds(1);
   EXPECT_EQ(Sample(tl::unexpected(ETIMEDOUT)), latest.get(late));
   latest.begin(late);
   EXPECT_EQ(Sample(tl::unexpected(EAGAIN)), latest.get(late));

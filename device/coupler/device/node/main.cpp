@@ -13,7 +13,7 @@
 #include "coupler/device/node/map_reading.hpp"
 #include "coupler/device/node/options.hpp"
 #include "coupler/device/node/program.hpp"
-#include "coupler/device/node/reload.hpp"
+#include "coupler/device/node/reload_requests.hpp"
 #include "coupler/device/node/serve_error.hpp"
 #include "coupler/device/replay/replay.hpp"
 #include "coupler/map/loader/load.hpp"

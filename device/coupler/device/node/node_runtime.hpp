@@ -14,7 +14,7 @@
 #include "coupler/device/node/loop_waker.hpp"
 #include "coupler/device/node/map_reading.hpp"
 #include "coupler/device/node/options.hpp"
-#include "coupler/device/node/reload.hpp"
+#include "coupler/device/node/reload_requests.hpp"
 #include "coupler/device/node/service_manager.hpp"
 #include "coupler/device/node/serving_context.hpp"
 #include "coupler/device/supervisor/supervisor.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "coupler/host/ros/configuration.hpp"
+#include "coupler/host/ros/map_sources.hpp"
 #include "coupler/host/ros/node.hpp"
 
 namespace coupler::host {

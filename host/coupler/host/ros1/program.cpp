@@ -21,8 +21,8 @@
 
 #include "coupler/base/ending_signals.hpp"
 #include "coupler/base/what_failed.hpp"
-#include "coupler/host/ros/configuration.hpp"
 #include "coupler/host/ros/drive.hpp"
+#include "coupler/host/ros/map_sources.hpp"
 #include "coupler/host/ros1/arguments.hpp"
 #include "coupler/host/ros1/namesake.hpp"
 #include "coupler/host/ros1/node.hpp"

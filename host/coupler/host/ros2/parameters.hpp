@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "coupler/host/ros/configuration.hpp"
+#include "coupler/host/ros/map_sources.hpp"
 #include "coupler/host/ros/settings.hpp"
 #include "coupler/host/ros2/parameter_server.hpp"
 

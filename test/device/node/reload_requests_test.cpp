@@ -8,7 +8,7 @@
 #include <string>
 
 #include "coupler/device/net/signals.hpp"
-#include "coupler/device/node/reload.hpp"
+#include "coupler/device/node/reload_requests.hpp"
 #include "coupler/device/supervisor/child.hpp"
 
 namespace coupler::device {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/ros/configuration.hpp"
+#include "coupler/host/ros/map_sources.hpp"
 
 #include <algorithm>
 #include <cctype>

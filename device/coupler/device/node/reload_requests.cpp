@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/device/node/reload.hpp"
+#include "coupler/device/node/reload_requests.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>
