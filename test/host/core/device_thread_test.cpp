@@ -226,8 +226,7 @@ TEST(DeviceThread, It_lives_on_though_the_sink_throws_again_when_it_is_told_that
   for (int i = 0; i < 2000 && reads < 4; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   EXPECT_TRUE(thread.end());
   EXPECT_GE(reads, 4) << "it was not connected again";
-  EXPECT_GE(sink.failures,
-            1);  // more where a busy machine makes polls late: that is a warning, which throws, too
+  EXPECT_GE(sink.failures, 1);  // more if a busy machine makes polls late: that warning throws, too
 }
 
 TEST(DeviceThread, It_ends_at_once_while_it_waits_to_connect_again) {
