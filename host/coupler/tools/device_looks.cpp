@@ -111,9 +111,11 @@ void DeviceLooks::tell_of_silence() {
   if (const auto tell = std::exchange(on_silence_, nullptr)) tell();
 }
 
-/// Without an identity the first note is that a device does not answer the request for it.
+/// If the identity is asked for, and there is none, the first note is that the device does not answer that
+/// request.
 void DeviceLooks::on_note(host::Level /*level*/, const std::string& text) {
-  if (!identity_ && !has_looked_ && notes_.empty()) tell_of_silence();
+  const bool is_unanswered = map_.verify != Verify::off && !identity_ && !has_looked_ && notes_.empty();
+  if (is_unanswered) tell_of_silence();
   if (std::find(notes_.begin(), notes_.end(), text) == notes_.end()) notes_.push_back(text);
 }
 

@@ -21,7 +21,7 @@ class DeviceLooks : public host::Sink {
  public:
   /// `map` is the map that the device's thread uses, and `chosen` has an element for each of its points.
   /// All references must outlive the object. `take` is called with each snapshot in the device's thread;
-  /// there, too, `on_silence` when the first request had no answer, which is no failure yet.
+  /// there, too, once, `on_silence` when a request had no answer, which is no failure yet.
   DeviceLooks(
       const Map& map, const std::vector<bool>& chosen, const host::ValueTable& values,
       const host::Clock& clock, std::function<void(Snapshot)> take, std::function<void()> on_silence = [] {});

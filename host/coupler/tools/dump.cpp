@@ -63,7 +63,7 @@ void tell(const std::string& note) {
 }
 
 /// A device that hangs takes several timeouts, and somebody waits.
-void tell_of_silence() { tell("no answer so far; the device is asked in other ways"); }
+void tell_of_silence() { tell("a request had no answer; the device is asked in other ways"); }
 
 /// Returns false while standard output is blocked because its reader does not read.
 bool is_taken() {

@@ -91,6 +91,22 @@ TEST(DeviceLooks, A_coupler_that_ignores_the_question_for_its_identity_is_read_o
   EXPECT_THAT(looking.requests(), ElementsAre("connect", identity_question, "connect", "read coils 0+1"));
 }
 
+TEST(DeviceLooks, Only_a_request_without_an_answer_is_told_of_as_one) {
+  Looking silent(MapBuilder().coil("a", 0));
+  silent.device.next_errors = {host::Timeout{std::chrono::milliseconds(9)}};
+  silent.look();
+  EXPECT_EQ(silent.silences, 1);
+
+  MapBuilder builder;
+  builder.holding("a", 0).holding("b", 4);
+  builder.head().polling.register_continuous = true;
+  builder.head().verify = Verify::off;
+  Looking answering(builder);
+  answering.device.missing.insert({Table::holding_registers, 2});
+  EXPECT_THAT(answering.look().notes, ElementsAre(HasSubstr("the device rejects")));
+  EXPECT_EQ(answering.silences, 0);
+}
+
 TEST(DeviceLooks, A_node_that_comes_up_behind_a_gateway_is_asked_for_its_map) {
   OnNode node(MapBuilder().coil("a", 0).coil("b", 1), MapBuilder().coil("a", 0).coil("b", 7));
   node.device.during_read = [&node] {

@@ -80,7 +80,7 @@ class Dump(unittest.TestCase):
             done = self.dump("cell.yaml", "--at", where)
         self.assertEqual(done.returncode, 3)
         note, error = done.stderr.splitlines()
-        self.assertEqual(note, "coupler dump: note: no answer so far; the device is asked in other ways")
+        self.assertEqual(note, "coupler dump: note: a request had no answer; the device is asked in other ways")
         self.assertIn("the connection was accepted, but unit 1 does not answer; check that the device runs, and that 'unit' is "
                       "its unit id: a node answers to its own", error)
 

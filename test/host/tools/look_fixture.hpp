@@ -65,8 +65,13 @@ struct Looking {
   host::Link link{host::test::share(device), owned->map().connection, owned->map().limits, &clock};
   host::ValueTable values{owned->map()};
   std::vector<Snapshot> snapshots;
-  DeviceLooks looks{read_only.map(), chosen, values, clock,
-                    [this](Snapshot snapshot) { snapshots.push_back(std::move(snapshot)); }};
+  int silences = 0;  ///< how often it was told that a request had no answer
+  DeviceLooks looks{read_only.map(),
+                    chosen,
+                    values,
+                    clock,
+                    [this](Snapshot snapshot) { snapshots.push_back(std::move(snapshot)); },
+                    [this] { ++silences; }};
   host::Device engine;  // last: it uses the others
 };
 
