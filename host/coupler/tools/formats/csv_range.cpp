@@ -25,7 +25,8 @@ std::optional<Ends> ends_of(const RowView& row, const RowPoint& point, const Cel
   };
   if (!ends)
     return leave_out("it is not two numbers",
-                     "write it as in 0..100, or as in 0=off;1=on where a number has names for its values");
+                     "write it as in 0..100, or as in 0=off;1=on where a number has names for its values, "
+                     "each once");
   const bool is_open =
       ends->comma_may_be_of_thousands || (row.separator == ';' && ends->point_may_be_of_thousands);
   if (is_open) {
@@ -46,12 +47,12 @@ std::optional<Ends> ends_of(const RowView& row, const RowPoint& point, const Cel
 
 /// "0=Off;1=On" becomes the names of the values, where the point can have these.
 bool add_names(const Cell& cell, RowPoint& point) {
-  const auto names = read_names(cell.text);
   const bool is_whole = point.is_number() && point.type.type && !codec::is_float(*point.type.type);
   const Entry* scale = loader::child(point.entry, "scale");
   const bool is_scaled = scale != nullptr && loader::parse_number(scale->text) != 1.0;
-  if (names.empty() || !is_whole || is_scaled || loader::child(point.entry, "values") != nullptr)
-    return false;
+  if (!is_whole || is_scaled || loader::child(point.entry, "values") != nullptr) return false;
+  const auto names = read_names(cell.text, *point.type.type);
+  if (names.empty()) return false;
   Entry values = section("values", cell.at);
   for (const auto& [number, name] : names) values.children.push_back(scalar(number, name, cell.at));
   set(point.entry, std::move(values));

@@ -2,11 +2,14 @@
 #include "coupler/tools/formats/csv_values.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
 #include "coupler/base/lower.hpp"
+#include "coupler/codec/value.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/tools/formats/csv_scan.hpp"
 
@@ -46,6 +49,13 @@ std::optional<std::string> take_end(std::string_view& text, Ends& ends) {
   ends.comma_may_be_of_thousands = ends.comma_may_be_of_thousands || sign == ',';
   ends.point_may_be_of_thousands = ends.point_may_be_of_thousands || sign == '.';
   return number;
+}
+
+bool holds(codec::Type type, std::int64_t number) {
+  codec::Format format;
+  format.type = type;
+  std::array<std::uint16_t, 4> registers{};
+  return codec::encode(codec::Value{number}, format, registers.data()).has_value();
 }
 
 }  // namespace
@@ -104,8 +114,10 @@ std::optional<Ends> read_range(std::string_view text) {
   return ends;
 }
 
-std::vector<NumberAndName> read_names(std::string_view text) {
+std::vector<NumberAndName> read_names(std::string_view text, codec::Type type) {
   std::vector<NumberAndName> names;
+  std::set<std::int64_t> seen_values;
+  std::set<std::string_view> seen_names;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find_first_of(";,|/\n"), text.size());
     std::string_view entry = text.substr(0, end);
@@ -119,7 +131,9 @@ std::vector<NumberAndName> read_names(std::string_view text) {
         !name.empty() && is_letter(name[0]) && std::all_of(name.begin(), name.end(), [](char c) {
           return is_letter(c) || (c >= '0' && c <= '9') || c == '_';
         });
-    if (!loader::parse_integer(number) || !is_name) return {};
+    const auto value = loader::parse_integer(number);
+    if (!value || !is_name || !holds(type, *value)) return {};
+    if (!seen_values.insert(*value).second || !seen_names.insert(name).second) return {};
     names.push_back({std::string(number), std::string(name)});
   }
   return names;

@@ -34,8 +34,9 @@ struct NumberAndName {
   std::string number;
   std::string name;
 };
-/// The values of "0=Off;1=On"; empty if the text is something else, or `values` of a map cannot have a name.
-std::vector<NumberAndName> read_names(std::string_view text);
+/// The values of "0=Off;1=On"; empty if the text is something else, or `values` of such a point cannot have
+/// them: a name may be none, a number or name may be there twice, or the type may not hold a number.
+std::vector<NumberAndName> read_names(std::string_view text, codec::Type type);
 
 /// All that the registers of the type can hold, which says nothing about the value.
 bool is_raw_range(const Ends& ends, codec::Type type);

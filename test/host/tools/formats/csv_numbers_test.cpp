@@ -201,6 +201,11 @@ TEST(CsvNumbers, A_range_that_a_map_does_not_have_is_left_out) {
                                        "' is not carried over: it is not two numbers"));
     EXPECT_THAT(range(cell), HasSubstr("a: {address: 1, type: INT}"));
   }
+  for (const char* cell : {"0=off;1=on;2=reserved;3=reserved", "0=off;1=on;0x01=run", "0=off;32768=on"}) {
+    const std::string made = range(cell);
+    EXPECT_THAT(made, HasSubstr("given:2:12: warning: the range '" + std::string(cell) + "' is not carried"));
+    EXPECT_THAT(made, HasSubstr("a: {address: 1, type: INT}")) << "the loader refuses such values";
+  }
   const std::string named = "0=Off;1=On";
   EXPECT_THAT(
       made_of("table,name,address,type,Range\nhr,a,1,REAL," + named + "\nhr,b,3,WORD," + named + "\n", {}),
