@@ -72,7 +72,9 @@ std::string merge(FoundPoint& stays, const FoundPoint& goes) {
     const Entry* other = loader::child(stays.entry, key.key);
     if (is_type_key(key.key) || is_same(other, &key)) continue;
     const bool is_free = other == nullptr && key.key != "scale";
-    const bool fits = key.key == "units" ? same_scale : same_value;  // units are of the scaled value
+    // Units are of the scaled value, and names of one that has no scale.
+    const bool is_of_scale = key.key == "units" || key.key == "values";
+    const bool fits = is_of_scale ? same_scale : same_value;
     (is_free && fits ? taken : lost).push_back(fmt::format("'{}'", key.key));
     if (is_free && fits) stays.entry.children.push_back(key);
   }

@@ -231,6 +231,18 @@ TEST(HomeAssistantImport, The_entity_that_stays_takes_over_what_says_nothing_els
                         "its type or size;"));
 }
 
+TEST(HomeAssistantImport, An_entity_with_a_scale_takes_over_no_names_of_values) {
+  const std::string climate = R"(climates: [{name: c, address: 9, target_temp_register: 8,
+    hvac_action_register: {address: 3, input_type: input, values: {action_idle: 0}}}])";
+  const std::string sensor = "sensors: [{name: s, address: 3, input_type: input, data_type: uint16";
+  const Imported scaled = hub(sensor + ", scale: 0.1}], " + climate);
+  EXPECT_THAT(scaled.text(), HasSubstr("s: {address: 3, type: UINT, scale: 0.1}"));
+  EXPECT_THAT(scaled.said, HasSubstr("so it is left out; lost: 'values', that it has no 'scale'; a map"));
+  const Imported plain = hub(sensor + "}], " + climate);
+  EXPECT_THAT(plain.text(), HasSubstr("s: {address: 3, type: UINT, values: {0: idle}}"));
+  EXPECT_THAT(plain.said, HasSubstr("'s' takes over 'values'"));
+}
+
 TEST(HomeAssistantImport, What_is_not_carried_over_is_told_at_the_first_entitys_key) {
   const Imported imported = hub(R"(sensors: [{name: a, address: 1,
     device_class: x, max_value: 9}, {name: b, address: 2, max_value: 9}],
