@@ -65,12 +65,6 @@ bool check_type(const Reader& reader, const Point& point, const Context& context
   return good;
 }
 
-bool is_identifier(std::string_view text) {
-  return !text.empty() && is_letter(text[0]) && std::all_of(text.begin(), text.end(), [](char c) {
-    return is_letter(c) || is_digit(c) || c == '_';
-  });
-}
-
 /// Remembers what one `values` has named so far: it may have a name for each number of a type.
 struct Seen {
   std::unordered_set<std::int64_t> values;
@@ -99,7 +93,7 @@ bool read_name(const Entry& entry, const Point& point, std::vector<NamedValue>& 
     return wrong(entry.key_at,
                  fmt::format("'values' has {} where a whole number must stand", shown(entry.key)),
                  std::string(names_form) + ": the number first");
-  if (entry.kind != Entry::Kind::scalar || !is_identifier(entry.text))
+  if (entry.kind != Entry::Kind::scalar || !is_value_name(entry.text))
     return wrong(entry.at, fmt::format("{} cannot be the name of a value", shown(entry)),
                  "use letters, digits and '_', a letter first");
   std::array<std::uint16_t, 4> registers{};

@@ -30,4 +30,7 @@ std::optional<bool> parse_boolean(std::string_view text);
 /// A number and its unit, as "500us", "5ms", "1.5s" or "2min"; "0" needs none. Not negative, below 24 h.
 std::optional<std::chrono::microseconds> parse_duration(std::string_view text);
 
+/// It can be the name of a value: letters, digits and '_', a letter first.
+bool is_value_name(std::string_view text);
+
 }  // namespace coupler::loader

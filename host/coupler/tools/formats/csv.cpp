@@ -7,17 +7,12 @@
 #include <fmt/format.h>
 
 #include "coupler/base/csv_cell.hpp"
+#include "coupler/tools/formats/csv_scan.hpp"
 
 namespace coupler::formats {
 namespace {
 
 constexpr std::string_view blanks = " \t";
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(blanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
 
 class CsvParser {
  public:
@@ -71,7 +66,7 @@ class CsvParser {
     } else {
       const std::size_t begin = at_;
       while (!ends_cell()) ++at_;
-      cell.text = trimmed(text_.substr(begin, at_ - begin));
+      cell.text = without_blanks(text_.substr(begin, at_ - begin));
     }
     row.push_back(std::move(cell));
     return true;

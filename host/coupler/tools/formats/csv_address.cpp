@@ -7,6 +7,7 @@
 
 #include "coupler/map/loader/problems.hpp"
 #include "coupler/map/loader/scalar.hpp"
+#include "coupler/tools/formats/csv_scan.hpp"
 #include "coupler/tools/formats/csv_words.hpp"
 
 namespace coupler::formats {
@@ -22,11 +23,6 @@ constexpr std::size_t digits_of_thousands = 3;
 
 bool has_digits_only(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), is_digit);
-}
-
-std::string_view without_blanks(std::string_view text) {
-  text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
-  return text.substr(0, text.find_last_not_of(' ') + 1);
 }
 
 class AddressReader {

@@ -16,6 +16,11 @@ void drop_blanks(std::string_view& text) {
   text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
 }
 
+std::string_view without_blanks(std::string_view text) {
+  drop_blanks(text);
+  return text.substr(0, text.find_last_not_of(" \t") + 1);
+}
+
 bool take_word(std::string_view& text, std::string_view word) {
   if (text.substr(0, word.size()) != word) return false;
   text.remove_prefix(word.size());

@@ -8,7 +8,11 @@
 
 namespace coupler::formats {
 
+/// Takes blanks and tabs.
 void drop_blanks(std::string_view& text);
+
+/// The text without those around it.
+std::string_view without_blanks(std::string_view text);
 
 /// False if the text does not begin so.
 bool take_word(std::string_view& text, std::string_view word);

@@ -30,11 +30,6 @@ std::string_view take_unit(std::string_view& text) {
   return unit;
 }
 
-std::string_view between_blanks(std::string_view text) {
-  drop_blanks(text);
-  return text.substr(0, text.find_last_not_of(' ') + 1);
-}
-
 bool take_separator(std::string_view& text) {
   for (const std::string_view word : {"...", "..", "\u2026", "to ", "bis ", "\u00E0 ", "-", "\u2013",
                                       "\u2014", "~", ";", ",", ":", "\u2192"})
@@ -125,14 +120,10 @@ std::vector<NumberAndName> read_names(std::string_view text, codec::Type type) {
     drop_blanks(text);
     const std::size_t sign = entry.find_first_of("=:");
     if (sign == std::string_view::npos) return {};
-    const std::string_view number = between_blanks(entry.substr(0, sign));
-    const std::string_view name = between_blanks(entry.substr(sign + 1));
-    const bool is_name =
-        !name.empty() && is_letter(name[0]) && std::all_of(name.begin(), name.end(), [](char c) {
-          return is_letter(c) || (c >= '0' && c <= '9') || c == '_';
-        });
+    const std::string_view number = without_blanks(entry.substr(0, sign));
+    const std::string_view name = without_blanks(entry.substr(sign + 1));
     const auto value = loader::parse_integer(number);
-    if (!value || !is_name || !holds(type, *value)) return {};
+    if (!value || !loader::is_value_name(name) || !holds(type, *value)) return {};
     if (!seen_values.insert(*value).second || !seen_names.insert(name).second) return {};
     names.push_back({std::string(number), std::string(name)});
   }
