@@ -2,6 +2,10 @@
 // Outputs at a time: the node's timer does it, and tells what became of it.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <future>
+#include <new>
+
 #include "test/host/core/schedule_fixture.hpp"
 
 namespace coupler::host {
@@ -187,6 +191,17 @@ TEST_F(NodeOutputsTest, A_node_that_was_started_anew_has_cancelled_what_was_not_
   EXPECT_EQ(sink->outcomes[0].result, Became::cancelled);
   EXPECT_EQ(sink->outcomes[0].reason, "the device read a new map, lost or found a chip, or ended");
   EXPECT_EQ(sink->outcomes[1].result, Became::unknown);
+}
+
+TEST_F(NodeOutputsTest, Each_has_one_outcome_though_the_sink_throws) {
+  begin_node(press());
+  for (int i = 0; i < 3; ++i) schedule("lamp", 1, seconds(100));
+  ++device.epoch;
+  sink->throwing_outcomes = 1;
+  EXPECT_THROW(run_for(seconds(3)), std::bad_alloc);
+  engine->give_up("no memory");
+  ASSERT_EQ(sink->outcomes.size(), 3U);
+  for (std::uint32_t i = 0; i < 3; ++i) EXPECT_EQ(sink->outcomes[i].number, i + 1);
 }
 
 TEST_F(NodeOutputsTest, What_the_node_drove_for_good_is_restored_after_a_reconnect) {

@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <map>
+#include <new>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,7 +45,11 @@ class RecordingSink : public Sink {
   Time repeat_at(std::uint32_t point) const override;
   void on_online(bool now) override { online.push_back(now); }
   std::vector<ScheduledOutcome> outcomes;
-  void on_scheduled(const ScheduledOutcome& outcome) override { outcomes.push_back(outcome); }
+  int throwing_outcomes = 0;  ///< it throws when it has been told so many
+  void on_scheduled(const ScheduledOutcome& outcome) override {
+    outcomes.push_back(outcome);
+    if (throwing_outcomes > 0 && throwing_outcomes-- > 0) throw std::bad_alloc();
+  }
   void on_report(Level, const std::string& text) override { reports.push_back(text); }
 
   /// How many reports contain the text.

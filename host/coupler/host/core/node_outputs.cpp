@@ -2,8 +2,6 @@
 #include "coupler/host/core/node_outputs.hpp"
 
 #include <algorithm>
-#include <iterator>
-#include <utility>
 
 namespace coupler::host {
 namespace {
@@ -65,25 +63,22 @@ std::vector<std::uint16_t> NodeOutputs::numbers() const {
   return numbers;
 }
 
+/// Each is taken before it is told: who is told may throw, and the next call goes on behind it.
 template <class Which>
-std::vector<NodeOutputs::Waiting> NodeOutputs::take_if(Which which) {
-  std::vector<Waiting> taken;
-  if (waiting_.empty()) return taken;
-  const auto kept = std::stable_partition(waiting_.begin(), waiting_.end(),
-                                          [&which](const Waiting& one) { return !which(one); });
-  std::move(kept, waiting_.end(), std::back_inserter(taken));
-  waiting_.erase(kept, waiting_.end());
-  return taken;
-}
-
-void NodeOutputs::tell(const Waiting& which, ScheduledOutcome::Result result, Stamp at,
-                       const std::string& reason) {
-  outcomes_.on_outcome(which.what, result, at, reason);
+void NodeOutputs::settle_if(Which which, ScheduledOutcome::Result result, Stamp at,
+                            const std::string& reason) {
+  for (;;) {
+    const auto found = std::find_if(waiting_.begin(), waiting_.end(), which);
+    if (found == waiting_.end()) return;
+    const AcceptedWrite what = found->what;
+    waiting_.erase(found);
+    outcomes_.on_outcome(what, result, at, reason);
+  }
 }
 
 void NodeOutputs::settle(std::uint16_t number, ScheduledOutcome::Result result, const std::string& reason) {
-  for (const Waiting& one : take_if([number](const Waiting& which) { return which.number == number; }))
-    tell(one, result, {clock_.now(), {}}, reason);
+  settle_if([number](const Waiting& which) { return which.number == number; }, result, {clock_.now(), {}},
+            reason);
 }
 
 void NodeOutputs::on_written(std::uint32_t point) {
@@ -92,11 +87,7 @@ void NodeOutputs::on_written(std::uint32_t point) {
 }
 
 void NodeOutputs::lose(const std::string& reason) {
-  while (!waiting_.empty()) {
-    const Waiting one = waiting_.front();
-    waiting_.erase(waiting_.begin());  // first: who is told may throw
-    tell(one, Kind::unknown, {clock_.now(), {}}, reason);
-  }
+  settle_if([](const Waiting&) { return true; }, Kind::unknown, {clock_.now(), {}}, reason);
 }
 
 void NodeOutputs::on_change(const Change& change, std::uint64_t number, Stamp stamp) {
@@ -106,9 +97,8 @@ void NodeOutputs::on_change(const Change& change, std::uint64_t number, Stamp st
     return;
   }
   const std::string reason = to_string(static_cast<modbus::Reason>(change.table));
-  for (const Waiting& one :
-       take_if([&change](const Waiting& which) { return which.number == change.address; }))
-    tell(one, *result, stamp, reason);
+  settle_if([&change](const Waiting& which) { return which.number == change.address; }, *result, stamp,
+            reason);
 }
 
 /// The process that had accepted them serves no more, and no other one drives them.
@@ -116,8 +106,7 @@ void NodeOutputs::on_new_epoch() {
   bits_.on_new_epoch();
   const Time now = clock_.now();
   const auto has_time = [now](const Waiting& which) { return which.what.what.due - told_within > now; };
-  for (const Waiting& one : take_if(has_time))
-    tell(one, Kind::cancelled, {now, {}}, to_string(modbus::Reason::reload));
+  settle_if(has_time, Kind::cancelled, {now, {}}, to_string(modbus::Reason::reload));
   lose("the device was restarted, or read a new map, before it had reported the outcome");
 }
 
@@ -127,8 +116,8 @@ void NodeOutputs::on_heard(std::uint64_t newest, std::optional<Stamp> stamp) {
   // have more without end.
   const Time now = clock_.now();
   const Time told = stamp ? stamp->at : now - all_told_within;
-  for (const Waiting& one : take_if([told](const Waiting& which) { return which.told_by < told; }))
-    tell(one, Kind::unknown, stamp.value_or(Stamp{now, {}}), not_told);
+  settle_if([told](const Waiting& which) { return which.told_by < told; }, Kind::unknown,
+            stamp.value_or(Stamp{now, {}}), not_told);
 }
 
 void NodeOutputs::on_end() {

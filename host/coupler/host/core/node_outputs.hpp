@@ -55,9 +55,8 @@ class NodeOutputs : public ChangeSink {
     AcceptedWrite what;
     Time told_by;  ///< an outcome that was not told by then was among the changes that were lost
   };
-  void tell(const Waiting& which, ScheduledOutcome::Result result, Stamp at, const std::string& reason);
   template <class Which>
-  std::vector<Waiting> take_if(Which which);
+  void settle_if(Which which, ScheduledOutcome::Result result, Stamp at, const std::string& reason);
 
   ChangeSink& bits_;
   Clock& clock_;
