@@ -7,6 +7,7 @@
 
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/device_fixture.hpp"
+#include "test/host/core/failing_heap.hpp"
 
 namespace coupler::host {
 namespace {
@@ -174,6 +175,52 @@ TEST_F(DeadmanTest,
   EXPECT_FALSE(asked.get().success);
   run_for(milliseconds(2000));
   EXPECT_EQ(speed(), 1);
+}
+
+TEST_F(DeadmanTest, A_deadman_value_that_a_safe_value_supersedes_is_written_if_something_throws_during_that) {
+  start_online();
+  push("speed", 500);
+  run_for(milliseconds(100));
+  std::future<CallAnswer> asked;
+  during_wait_for_turn([this] { EXPECT_THROW(run_for(milliseconds(200)), std::bad_alloc); },
+                       [&] {
+                         device.refuses = [this](const std::string&) -> std::optional<modbus::Exception> {
+                           device.refuses = nullptr;
+                           throw std::bad_alloc();
+                         };
+                         asked = engine->make_safe();
+                       });
+  engine->give_up("no memory");
+  EXPECT_TRUE(is_turn_free()) << "other units wait";
+  ASSERT_TRUE(asked.valid());
+  EXPECT_FALSE(asked.get().success);
+  run_for(milliseconds(2000));
+  EXPECT_EQ(speed(), 1);
+}
+
+TEST_F(DeadmanTest, A_deadman_value_is_written_though_there_is_no_memory_at_first) {
+  bool has_failed = true;
+  for (long after = 0; has_failed; ++after) {
+    engine.reset();
+    start_online();
+    push("speed", 500);
+    run_for(milliseconds(100));
+    clock.advance(milliseconds(200));
+    Write write;
+    write.point = 1;
+    write.ordered = true;
+    for (int i = 0; i < 8; ++i) engine->push(write);  // there is no room for another one
+    test::fail_allocation(after);
+    try {
+      engine->step();
+      has_failed = test::has_failed();
+    } catch (const std::bad_alloc&) {
+      has_failed = test::has_failed();
+      engine->give_up("no memory");
+    }
+    run_for(milliseconds(2000));
+    EXPECT_EQ(speed(), 1) << after;
+  }
 }
 
 TEST_F(DeadmanTest, A_deadman_value_whose_unit_is_away_is_written_when_it_is_back) {

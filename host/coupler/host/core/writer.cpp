@@ -105,7 +105,13 @@ void Writer::fire_deadmen() {
     const HostOptions::Deadman& deadman = point.host.deadman;
     Write write = make_write(map_, expired->point, deadman.value);
     write.of_deadman = write.ordered = true;
-    const WriteQueue::Pushed pushed = queue_.push(write);
+    WriteQueue::Pushed pushed;
+    try {
+      pushed = queue_.push(write);
+    } catch (...) {  // there is no memory for another place
+      deadmen_.put_back(*expired);
+      throw;
+    }
     if (pushed.superseded) tell(*pushed.superseded, {Outcome::superseded});
     if (!pushed.accepted) {  // it goes when there is room: the queue is being emptied
       deadmen_.put_back(*expired);
@@ -249,25 +255,30 @@ Result<> Writer::verify(const Write& write, const Result<>& connection) {
   return read || !is_unit_away(read.error()) ? Result<>{} : read;
 }
 
-/// Returns the points whose deadman values waited. If a listener throws, they are due again.
-std::vector<std::uint32_t> Writer::supersede_for_safe() {
-  std::vector<std::uint32_t> deadmen;
+/// Adds the points whose deadman values waited to `deadmen`.
+void Writer::supersede_for_safe(std::vector<std::uint32_t>& deadmen) {
+  while (const auto write = queue_.take_one_of(is_safe_point_)) {
+    if (write->of_deadman) deadmen.push_back(write->point);
+    settle(*write, {Outcome::superseded});
+  }
+}
+
+/// If something throws, the deadman values of `deadmen` are due again.
+Result<std::vector<RejectedValue>> Writer::replace_by_safe_values(std::vector<std::uint32_t>& deadmen) {
+  deadmen.reserve(safe_values_.size());  // first: none is lost for lack of memory
   try {
-    while (const auto write = queue_.take_one_of(is_safe_point_)) {
-      if (write->of_deadman) deadmen.push_back(write->point);
-      settle(*write, {Outcome::superseded});
-    }
+    supersede_for_safe(deadmen);
+    return write_safe_values();
   } catch (...) {
     for (const std::uint32_t point : deadmen) deadmen_.retry(point, Time());
     throw;
   }
-  return deadmen;
 }
 
 Result<> Writer::make_safe() {
   const std::size_t asked = safe_calls_.size();
-  const std::vector<std::uint32_t> deadmen = supersede_for_safe();
-  const auto rejected = write_safe_values();
+  std::vector<std::uint32_t> deadmen;
+  const auto rejected = replace_by_safe_values(deadmen);
   if (!rejected) {
     for (const std::uint32_t point : deadmen)
       if (last_written_.count(point) == 0) deadmen_.retry(point, Time());  // nothing is restored
@@ -294,12 +305,17 @@ Result<std::vector<RejectedValue>> Writer::write_safe_values() {
     remember(write);
     owed_.erase(write.point);
   }
-  link_.rank(Rank::safe);
-  auto rejected = write_values(safe_values_, map_, link_);
-  for (const Write& write : safe_values_) remember(write);  // an older value may have been told meanwhile
-  link_.rank(Rank::write);
-  link_.give_back();  // where there are none
-  return rejected;
+  try {
+    link_.rank(Rank::safe);
+    auto rejected = write_values(safe_values_, map_, link_);
+    for (const Write& write : safe_values_) remember(write);  // an older value may have been told meanwhile
+    link_.rank(Rank::write);
+    link_.give_back();  // where there are none
+    return rejected;
+  } catch (...) {
+    link_.rank(Rank::write);  // the other units wait
+    throw;
+  }
 }
 
 void Writer::tell(const Write& write, const WriteResult& result) {

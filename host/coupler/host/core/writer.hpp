@@ -135,7 +135,8 @@ class Writer {
   std::vector<Write> take_owed();
   Time deadman_due(std::uint32_t point, bool is_away) const;
   void suspect(const std::vector<Write>& writes, const Error& why);
-  std::vector<std::uint32_t> supersede_for_safe();
+  void supersede_for_safe(std::vector<std::uint32_t>& deadmen);
+  Result<std::vector<RejectedValue>> replace_by_safe_values(std::vector<std::uint32_t>& deadmen);
   Result<> make_safe();
   Result<std::vector<RejectedValue>> write_safe_values();
   void tell(const Write& write, const WriteResult& result);
