@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <array>
 #include <new>
 
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/device_fixture.hpp"
+#include "test/host/core/failing_heap.hpp"
 
 namespace coupler::host {
 namespace {
@@ -80,6 +82,55 @@ TEST_F(WriteResultsTest, Each_write_has_one_result_though_the_listener_of_anothe
   EXPECT_THAT(third.outcomes, ElementsAre(Outcome::lost));
   EXPECT_FALSE(device.requests.empty()) << "it is connected again";
   EXPECT_LT(device.requests.size(), 100U) << "and no write is due for ever";
+}
+
+struct Counted : WriteListener {
+  int calls = 0;
+  void on_result(const WriteResult& /*result*/) override { ++calls; }
+};
+
+TEST_F(WriteResultsTest, Each_write_has_one_result_though_there_is_no_memory_when_the_connection_ends) {
+  bool has_failed = true;
+  for (long after = 0; has_failed; ++after) {
+    engine.reset();
+    builder = fakes::MapBuilder();
+    start_online([](Map& map) { map.on_reconnect = OnReconnect::restore; });
+    std::array<Counted, 4> counted;
+    push("k0", 1, &counted[0]);
+    push("r0", 1, &counted[1]);
+    push("r2", 1, &counted[2]);
+    push("k3", 1, &counted[3]);
+    device.next_errors.assign(1, TransportFailure{"reset"});
+    test::fail_allocation(after);
+    try {
+      engine->step();
+      has_failed = test::has_failed();
+    } catch (const std::bad_alloc&) {
+      has_failed = test::has_failed();
+      engine->give_up("no memory");
+    }
+    device.next_errors.clear();
+    run_for(milliseconds(200));
+    for (const Counted& each : counted) EXPECT_EQ(each.calls, 1) << after;
+  }
+}
+
+TEST_F(WriteResultsTest, A_write_that_is_refused_has_its_result_though_there_is_no_memory_for_its_text) {
+  start_online();
+  Counted counted;
+  Write write;
+  write.listener = &counted;
+  test::fail_allocation();
+  EXPECT_THROW(engine->refuse(write, "a text that needs memory"), std::bad_alloc);
+  EXPECT_EQ(counted.calls, 1);
+}
+
+TEST(WriteTicket, It_has_its_result_though_there_is_no_memory_for_its_text) {
+  WriteTicket ticket;
+  test::fail_allocation();
+  EXPECT_THROW(ticket.on_result({Outcome::dropped, std::nullopt, "a text that needs memory"}),
+               std::bad_alloc);
+  EXPECT_EQ(ticket.wait().outcome, Outcome::dropped);
 }
 
 TEST_F(WriteResultsTest, A_burst_becomes_one_request_and_each_write_has_its_result) {

@@ -76,8 +76,9 @@ class WriteTicket : public WriteListener {
 
   void on_result(const WriteResult& result) override {
     const std::lock_guard lock(mutex_);
-    outcome_ = Outcome{result.outcome, result.exception, to_string(result)};
+    outcome_ = Outcome{result.outcome, result.exception, {}};
     known_.notify_all();  // under the lock: the waiting thread may destroy the ticket as soon as it is free
+    outcome_->text = to_string(result);  // last: there may be no memory for it
   }
 
   /// Waits until the write has its result, a few timeouts of the device at most.

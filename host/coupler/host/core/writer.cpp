@@ -318,9 +318,15 @@ Result<std::vector<RejectedValue>> Writer::write_safe_values() {
   }
 }
 
+/// The listener has the result whatever throws before.
 void Writer::tell(const Write& write, const WriteResult& result) {
   statistics_.wrote(result.outcome);
-  values_.wrote(write.point, result);
+  try {
+    values_.wrote(write.point, result);
+  } catch (...) {
+    if (write.listener != nullptr) write.listener->on_result(result);
+    throw;
+  }
   if (write.listener != nullptr) write.listener->on_result(result);
 }
 

@@ -155,11 +155,16 @@ void Writer::remember(const Write& write) {
 
 void Writer::drop(const Write& write) {
   const bool keeps = restores(write) && !write.of_schedule;  // that has a time of its own
-  if (keeps) remember(write);
   if (write.of_deadman) deadmen_.retry(write.point, Time());
+  queue_.settled(write.point);
+  try {
+    if (keeps) remember(write);
+  } catch (...) {  // there is no memory for it
+    tell(write, {Outcome::dropped, std::nullopt, "not connected"});
+    throw;
+  }
   const WriteResult result = {keeps ? Outcome::kept : Outcome::dropped, std::nullopt,
                               unconnected_text(map_.points[write.point], write)};
-  queue_.settled(write.point);
   tell(write, result);
   if (keeps || dropped_++ > 0) return;
   sink_.on_report(Level::warning,
