@@ -4,8 +4,10 @@
 
 #include <chrono>
 #include <future>
+#include <new>
 #include <thread>
 
+#include "test/host/core/failing_heap.hpp"
 #include "test/host/core/schedule_fixture.hpp"
 
 namespace coupler::host {
@@ -149,6 +151,43 @@ TEST_F(ScheduledWritesTest, The_end_of_the_connection_cancels_it) {
   EXPECT_EQ(told.reason, "the connection ended");
   run_for(seconds(20));
   EXPECT_EQ(lamp(), 0);
+}
+
+TEST_F(ScheduledWritesTest, The_end_of_the_connection_cancels_what_is_queued_though_the_sink_has_thrown) {
+  begin_foreign(press());
+  schedule("lamp", 1, milliseconds(50));
+  schedule("lamp", 0, milliseconds(50));
+  Write write = wanted("speed", 1, milliseconds(0)).write;
+  write.ordered = true;
+  for (std::size_t i = 0; i + 1 < WriteQueue::capacity; ++i) engine->push(write);
+  clock.advance(milliseconds(50));
+  sink->throwing_outcomes = 1;
+  EXPECT_THROW(engine->step(), std::bad_alloc);
+  engine->give_up("no memory");
+  ASSERT_EQ(sink->outcomes.size(), 2U);
+  EXPECT_EQ(sink->outcomes[0].number, 2U) << "there was no room for it";
+  EXPECT_EQ(sink->outcomes[0].result, Became::failed);
+  EXPECT_EQ(sink->outcomes[1].number, 1U);
+  EXPECT_EQ(sink->outcomes[1].result, Became::cancelled);
+}
+
+TEST_F(ScheduledWritesTest, It_has_one_outcome_though_there_is_no_memory_when_its_time_has_come) {
+  bool has_failed = true;
+  for (long after = 0; has_failed; ++after) {
+    begin_foreign(press());
+    schedule("lamp", 1, milliseconds(50));
+    clock.advance(milliseconds(50));
+    sink->outcomes.reserve(1);
+    test::fail_allocation(after);
+    try {
+      engine->step();
+      has_failed = test::has_failed();
+    } catch (const std::bad_alloc&) {
+      has_failed = test::has_failed();
+      engine->give_up("no memory");
+    }
+    EXPECT_EQ(outcome().number, 1U) << after;
+  }
 }
 
 TEST_F(ScheduledWritesTest, What_has_no_answer_is_unknown_and_not_made_again) {

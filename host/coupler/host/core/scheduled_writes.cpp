@@ -54,7 +54,14 @@ void ScheduledWrites::queue(Entry& entry) {
   write.ordered = write.of_schedule = true;
   write.listener = &entry;
   queueing_ = true;
-  writer_.push(write);
+  try {
+    writer_.push(write);
+  } catch (...) {
+    queueing_ = false;
+    for (Entry& one : entries_)  // it has no place in the queue; or it is no more, since it has its outcome
+      if (&one == &entry) one.state = Entry::State::waiting;
+    throw;
+  }
   queueing_ = false;
 }
 
