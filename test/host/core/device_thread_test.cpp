@@ -14,6 +14,7 @@
 
 #include "coupler/host/core/write.hpp"
 #include "test/fakes/map_builder.hpp"
+#include "test/host/core/failing_heap.hpp"
 #include "test/host/core/fake_device.hpp"
 
 namespace coupler::host {
@@ -227,6 +228,27 @@ TEST(DeviceThread, It_lives_on_though_the_sink_throws_again_when_it_is_told_that
   EXPECT_TRUE(thread.end());
   EXPECT_GE(reads, 4) << "it was not connected again";
   EXPECT_GE(sink.failures, 1);  // more if a busy machine makes polls late: that warning throws, too
+}
+
+TEST(DeviceThread, It_lives_on_though_there_is_no_memory_to_tell_that_it_is_lost) {
+  auto builder = MapBuilder().coil("a", 1);
+  builder.head().polling.rate = 100;
+  const auto owned = builder.build();
+  FakeDevice device;
+  std::atomic<int> reads{0};
+  device.during_read = [&reads] {
+    if (++reads != 2) return;
+    const std::runtime_error failure("a text that needs memory to be told");
+    test::fail_allocation();
+    throw failure;
+  };
+  Link link(test::share(device), {}, {});
+  WaitingSink sink(owned->map());
+  DeviceThread thread(owned->map(), Verify::off, no_map, link, sink.values, sink);
+  thread.start();
+  for (int i = 0; i < 1000 && reads < 4; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(thread.end());
+  EXPECT_GE(reads, 4) << "it was not connected again";
 }
 
 TEST(DeviceThread, It_ends_at_once_while_it_waits_to_connect_again) {

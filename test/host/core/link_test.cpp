@@ -148,6 +148,14 @@ TEST_F(LinkTest, A_request_that_throws_keeps_no_turn) {
   EXPECT_TRUE(read());
 }
 
+TEST_F(LinkTest, Once_it_is_closed_it_awaits_no_reply_and_takes_no_turn_from_others) {
+  ASSERT_TRUE(link.send(WriteRequest::register_value(1, 7)));
+  link.close();
+  ASSERT_TRUE(shared->turns.try_take(this));
+  EXPECT_TRUE(is<NotConnected>(link.receive()));
+  EXPECT_TRUE(shared->turns.is_held_by(this));
+}
+
 TEST_F(LinkTest, A_failed_write_of_another_thread_leaves_the_channel_to_its_owner) {
   channel.fails_to_send = true;
   const auto request = WriteRequest::coil(1, true);

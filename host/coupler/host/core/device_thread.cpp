@@ -15,6 +15,8 @@ using std::chrono::milliseconds;
 constexpr milliseconds longest_shutdown(700);
 /// The time limit for the first of these requests if the device does not reply.
 constexpr milliseconds longest_attempt(100);
+/// The time until a connection that could not be given up is given up again.
+constexpr milliseconds retry(100);
 
 }  // namespace
 
@@ -100,7 +102,8 @@ std::future<CallAnswer> DeviceThread::cancel_scheduled(std::uint32_t number) {
 /// and no other.
 template <class Work>
 Time DeviceThread::attempt(Work work) {
-  if (thrown_) give_up(std::exchange(thrown_, nullptr));
+  if (thrown_)
+    if (const Time next = give_up(std::exchange(thrown_, nullptr)); thrown_ && !is_ending_) return next;
   try {
     return work();
   } catch (...) {
@@ -111,8 +114,10 @@ Time DeviceThread::attempt(Work work) {
 Time DeviceThread::give_up(const std::exception_ptr& thrown) {
   try {
     return device_.give_up(what_failed(thrown));
-  } catch (...) {  // no memory for a text: the next step finds what is left to do
-    return Time::min();
+  } catch (...) {   // no memory for a text
+    link_.close();  // gives back the turn of the request that has thrown
+    thrown_ = thrown;
+    return link_.clock().now() + retry;
   }
 }
 

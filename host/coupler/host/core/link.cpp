@@ -140,6 +140,7 @@ Result<> Link::send(const modbus::WriteRequest& request) {
 }
 
 Result<> Link::receive() {
+  if (!is_connected_) return fail(NotConnected{"not connected"});  // close() has ended the request
   const auto reply = finish(false);
   written_ = stamp_between(sent_at_, answered_);
   if (!reply) return tl::make_unexpected(reply.error());
