@@ -220,6 +220,35 @@ TEST_F(NodeOutputsTest, What_the_node_drove_for_good_is_restored_after_a_reconne
   EXPECT_EQ(device.count("write register 2"), 0U);
 }
 
+TEST_F(NodeOutputsTest, What_the_driver_restores_goes_before_a_call_that_it_would_cancel) {
+  auto builder = press();
+  builder.head().on_reconnect = OnReconnect::restore;
+  begin_node(builder);
+  push("speed", 5);
+  run_for(milliseconds(10));
+  device.next_errors = {TransportFailure{"it has gone"}};
+  device.refuse_connect = NotConnected{"refused"};
+  run_for(milliseconds(200));
+  device.refuse_connect.reset();
+  device.requests.clear();
+  device.during_read = [this] {  // while it is asked who it is
+    push("speed", 7);
+    device.during_read = nullptr;
+  };
+  std::future<ScheduleAnswer> asked;
+  device.refuses = [&](const std::string& request) -> std::optional<modbus::Exception> {
+    if (request != "write register 2" || asked.valid()) return std::nullopt;
+    asked = engine->schedule(wanted("speed", 9, seconds(1)));
+    return modbus::Exception::illegal_data_value;
+  };
+  run_for(seconds(2));
+  ASSERT_TRUE(asked.valid());
+  EXPECT_EQ(asked.get().text, "accepted: the device does it");
+  EXPECT_EQ(speed(), 5);
+  const auto scheduled = std::find(device.requests.begin(), device.requests.end(), "schedule");
+  EXPECT_EQ(std::count(device.requests.begin(), scheduled, "write register 2"), 2);
+}
+
 TEST_F(NodeOutputsTest, What_was_written_since_the_node_drove_it_is_restored_and_not_that) {
   auto builder = press();
   builder.head().on_reconnect = OnReconnect::restore;

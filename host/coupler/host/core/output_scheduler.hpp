@@ -67,7 +67,9 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
   }
   bool has_request(const ChangeListener& listener) {
     if (cancels_.any()) return true;
-    return is_ready(listener) && calls_.any_of([this](const AskedSchedule& asked) { return is_next(asked); });
+    // What the writer owes goes first: it would cancel what the device had accepted before.
+    return is_ready(listener) && !writer_.owes() &&
+           calls_.any_of([this](const AskedSchedule& asked) { return is_next(asked); });
   }
   /// Sends one request. An error means that the connection can no longer be used.
   Result<> step(const ChangeListener& listener);

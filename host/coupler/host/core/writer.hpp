@@ -86,6 +86,8 @@ class Writer {
   /// Writes the last values of all outputs under `on_reconnect: restore`, for a new connection, or for a
   /// coupler whose watchdog had switched its outputs off.
   Result<> reconnected();
+  /// Returns whether step() restores an output that reconnected() has left to a newer value.
+  bool owes() const { return owes_; }
   /// Notes that the device is a node of this project. A node knows every function, so exception 01 is about
   /// rights.
   void talks_to_node(bool is_node) { is_node_ = is_node; }
