@@ -14,7 +14,10 @@ namespace {
 int event_descriptor() {
   const int fd = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (fd >= 0) return fd;
-  throw std::system_error(errno, std::generic_category(),
+  const std::error_code why(errno, std::generic_category());
+  if (why != std::errc::too_many_files_open)  // not the limit of this process
+    throw std::system_error(why, "a thread could not be woken");
+  throw std::system_error(why,
                           "no file descriptor is left to wake a thread; look at the limit (ulimit -n, "
                           "LimitNOFILE= of a service)");
 }
