@@ -254,6 +254,17 @@ TEST_F(ScheduledWritesTest, A_call_withdraws_it_while_it_waits_behind_another_un
   EXPECT_EQ(device.count("write coil 5"), 0U);
 }
 
+TEST_F(ScheduledWritesTest, Until_a_call_has_withdrawn_it_nobody_sends_it) {
+  begin_foreign(press());
+  schedule("lamp", 1, milliseconds(50));
+  auto answer = engine->cancel_scheduled(1);
+  push("speed", 3);
+  EXPECT_FALSE(engine->send_now());
+  run_for(milliseconds(10));
+  EXPECT_TRUE(answer.get().success);
+  EXPECT_EQ(speed(), 3);
+}
+
 TEST_F(ScheduledWritesTest, The_limits_are_told_with_what_is_possible) {
   begin_foreign(press());
   EXPECT_EQ(schedule("lamp", 1, milliseconds(-5)).number, 0U);

@@ -83,7 +83,7 @@ bool Writer::withdraw(const WriteListener& listener) {
 bool Writer::send_now() {
   if (send_error_ || !batch_.empty() || !link_.is_ready()) return false;
   drop_late();
-  if (owes_) return false;
+  if (owes_ || withdraws()) return false;
   if (queue_.empty()) return true;     // the owner was faster
   if (!link_.reserve()) return false;  // first: in the queue a newer value may replace it until its turn
   queue_.take(batch_, merges_, false);
