@@ -47,10 +47,12 @@ Result<> answered(std::promise<Answer>& to, F make) {
   try {
     return make();
   } catch (...) {
-    const Answer unknown{{}, std::string(in_doubt) + what_failed(std::current_exception())};
+    const std::exception_ptr thrown = std::current_exception();
+    const Answer unknown{{}, std::string(in_doubt) + what_failed(thrown)};
     try {
       to.set_value(unknown);
-    } catch (const std::future_error&) {  // it has one
+    } catch (const std::future_error&) {
+      std::rethrow_exception(thrown);  // it has an answer
     }
     throw;
   }
