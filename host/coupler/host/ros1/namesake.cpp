@@ -61,18 +61,20 @@ std::optional<int> process_of_namesake(const std::string& uri) {
   return static_cast<int&>(process);
 }
 
+std::string end_text(const std::string& reason) {
+  if (reason.find("same name") == std::string::npos)
+    return fmt::format("told to end: {}", printable_lines(reason));
+  return fmt::format(
+      "another node has started with the name {}, and so the ROS master ends this one: start it once, or "
+      "give "
+      "each driver a name of its own (--name)",
+      ros::this_node::getName());
+}
+
 /// What roscpp does, but with the remedy.
 void shut_down(XmlRpcValue& arguments, XmlRpcValue& result) {
   if (arguments.getType() == XmlRpcValue::TypeArray && arguments.size() > 1) {
-    const auto& reason = static_cast<std::string&>(arguments[1]);
-    if (reason.find("same name") != std::string::npos)
-      ROS_ERROR("%s",
-                fmt::format("another node has started with the name {}, and so the ROS master ends this one: "
-                            "start it once, or give each driver a name of its own (--name)",
-                            ros::this_node::getName())
-                    .c_str());
-    else
-      ROS_WARN("%s", fmt::format("told to end: {}", printable_lines(reason)).c_str());
+    ROS_WARN("%s", end_text(static_cast<std::string&>(arguments[1])).c_str());
     ros::requestShutdown();
   }
   result = ros::xmlrpc::responseInt(1, "", 0);
