@@ -62,7 +62,7 @@ std::string meant_option(const CLI::App& app, const std::string& given, Nearest 
   return {};
 }
 
-/// What to propose for the first of the arguments that is near to something; empty if none is.
+/// Returns the proposal for the first of the arguments that is near to something; empty if none is.
 std::string proposal(const CLI::App& app, const std::vector<std::string>& extras, Nearest nearest,
                      const std::string& option_of_stray) {
   for (const std::string& extra : extras) {
@@ -73,7 +73,7 @@ std::string proposal(const CLI::App& app, const std::vector<std::string>& extras
   return is_stray && !option_of_stray.empty() ? option_of_stray + ' ' + extras[0] : std::string();
 }
 
-/// With what was meant, or else with the version, if it does not know an argument.
+/// Returns the error; if it is about an unknown argument, with what was meant, or else with the version.
 CLI::Error told(const CLI::App& program, const CLI::ParseError& error, Nearest nearest,
                 const std::string& option_of_stray) {
   std::string what = error.what();

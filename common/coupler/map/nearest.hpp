@@ -15,7 +15,7 @@ unsigned edit_distance(std::string_view a, std::string_view b);
 /// "on", "unlatched" of "latched".
 bool is_slip(std::string_view word, std::string_view candidate);
 
-/// Of the candidates that the word is a slip of, those that differ least.
+/// Returns the candidates that the word is a slip of, and of these only those that differ least.
 std::vector<std::string_view> all_nearest(std::string_view word,
                                           const std::vector<std::string_view>& candidates);
 

@@ -15,8 +15,7 @@ std::string reach_remedy(const Connection& where, const host::Error& error, std:
   if (std::holds_alternative<host::Timeout>(error))
     return fmt::format(
         "the connection was accepted, but unit {} does not answer; {}: a node answers to its own, 0 and 255, "
-        "a "
-        "gateway to those of the units behind it",
+        "a gateway to those of the units behind it",
         where.unit, host::silent_unit_remedy);
   return where.serial.present() || has_remedy(error) ? std::string() : std::string(over_tcp);
 }

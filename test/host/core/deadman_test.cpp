@@ -7,7 +7,6 @@
 
 #include "test/fakes/map_builder.hpp"
 #include "test/host/core/device_fixture.hpp"
-#include "test/host/core/failing_heap.hpp"
 
 namespace coupler::host {
 namespace {
@@ -210,14 +209,7 @@ TEST_F(DeadmanTest, A_deadman_value_is_written_though_there_is_no_memory_at_firs
     write.point = 1;
     write.ordered = true;
     for (int i = 0; i < 8; ++i) engine->push(write);  // there is no room for another one
-    test::fail_allocation(after);
-    try {
-      engine->step();
-      has_failed = test::has_failed();
-    } catch (const std::bad_alloc&) {
-      has_failed = test::has_failed();
-      engine->give_up("no memory");
-    }
+    has_failed = step_without_memory(after);
     run_for(milliseconds(2000));
     EXPECT_EQ(speed(), 1) << after;
   }

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <new>
 #include <thread>
 #include <utility>
 
 #include "coupler/map/functions.hpp"
 #include "coupler/map/identity.hpp"
 #include "coupler/modbus/server.hpp"
+#include "test/host/core/failing_heap.hpp"
 
 namespace coupler::host::test {
 
@@ -81,6 +83,18 @@ void DeviceTest::run_for(Duration duration) {
     const Time due = engine->step();
     clock.sleep_until(std::min({due, device.answers_wait_at(), end}));
     if (due > clock.now() && device.answers_wait_at() <= clock.now()) engine->arrived();
+  }
+}
+
+bool DeviceTest::step_without_memory(long allocations) {
+  fail_allocation(allocations);
+  try {
+    engine->step();
+    return has_failed();
+  } catch (const std::bad_alloc&) {
+    const bool failed = has_failed();
+    engine->give_up("no memory");
+    return failed;
   }
 }
 

@@ -41,6 +41,9 @@ struct DeviceTest : testing::Test {
   void serve(const MapBuilder& builder);
   /// What the thread does: steps, and in between waits for what is due.
   void run_for(Duration duration);
+  /// What the thread does in a step in which one allocation fails, the one after so many: it gives the
+  /// connection up. Returns false if the step makes no more than `allocations`.
+  bool step_without_memory(long allocations);
   void push(std::string_view point, std::uint16_t value, WriteListener* listener = nullptr);
   /// Makes the table of `owned`, and the sink.
   void make_sink();

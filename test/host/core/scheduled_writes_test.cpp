@@ -7,7 +7,6 @@
 #include <new>
 #include <thread>
 
-#include "test/host/core/failing_heap.hpp"
 #include "test/host/core/schedule_fixture.hpp"
 
 namespace coupler::host {
@@ -178,14 +177,7 @@ TEST_F(ScheduledWritesTest, It_has_one_outcome_though_there_is_no_memory_when_it
     schedule("lamp", 1, milliseconds(50));
     clock.advance(milliseconds(50));
     sink->outcomes.reserve(1);
-    test::fail_allocation(after);
-    try {
-      engine->step();
-      has_failed = test::has_failed();
-    } catch (const std::bad_alloc&) {
-      has_failed = test::has_failed();
-      engine->give_up("no memory");
-    }
+    has_failed = step_without_memory(after);
     EXPECT_EQ(outcome().number, 1U) << after;
   }
 }

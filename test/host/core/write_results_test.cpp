@@ -101,14 +101,7 @@ TEST_F(WriteResultsTest, Each_write_has_one_result_though_there_is_no_memory_whe
     push("r2", 1, &counted[2]);
     push("k3", 1, &counted[3]);
     device.next_errors.assign(1, TransportFailure{"reset"});
-    test::fail_allocation(after);
-    try {
-      engine->step();
-      has_failed = test::has_failed();
-    } catch (const std::bad_alloc&) {
-      has_failed = test::has_failed();
-      engine->give_up("no memory");
-    }
+    has_failed = step_without_memory(after);
     device.next_errors.clear();
     run_for(milliseconds(200));
     for (const Counted& each : counted) EXPECT_EQ(each.calls, 1) << after;

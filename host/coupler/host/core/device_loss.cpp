@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a device does when its connection is lost.
+// A device loses its connection.
 #include <algorithm>
 #include <exception>
 
@@ -11,7 +11,7 @@
 namespace coupler::host {
 namespace {
 
-/// Of those who are told one after another, so many may throw.
+/// Listeners are told one after another; no more than this many may throw.
 constexpr int most_throwing = 100000;
 
 std::string loss_text(const Map& map, const Error& error, bool was_online) {

@@ -42,7 +42,7 @@ constexpr auto superset_text = "the device has more points than this map; those 
 /// Returns what to do about a unit of an RTU line that stays silent.
 std::string line_remedy(const Connection& line);
 
-/// What to do about a device that accepts connections and answers nothing.
+/// The remedy for a device that accepts connections and answers nothing.
 constexpr auto silent_unit_remedy = "check that the device runs, and that 'unit' is its unit id";
 
 /// Returns why a device may not answer the request for its identity (a timeout, or a gateway that cannot

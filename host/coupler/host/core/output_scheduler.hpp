@@ -67,7 +67,7 @@ class OutputScheduler : private ScheduledListener, private WrittenListener {
   }
   bool has_request(const ChangeListener& listener) {
     if (cancels_.any()) return true;
-    // What the writer owes goes first: it would cancel what the device had accepted before.
+    // The writer restores first what it owes: that would cancel an output which the device has accepted.
     return is_ready(listener) && !writer_.owes() &&
            calls_.any_of([this](const AskedSchedule& asked) { return is_next(asked); });
   }

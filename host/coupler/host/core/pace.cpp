@@ -54,8 +54,8 @@ std::string too_slow(const Map& map, double share) {
         rates.fastest, two_digits(rates.fastest * share), possible);
   return fmt::format(
       "the device is too slow for the rates of the map, or this computer is busy: {:.0f} % of the cycles are "
-      "done. Set lower rates; "
-      "the fastest may be {:g} if the others are lowered, too. `coupler plan` says what takes how long",
+      "done. Set lower rates; the fastest may be {:g} if the others are lowered, too. `coupler plan` says "
+      "what takes how long",
       100 * share, possible);
 }
 

@@ -68,8 +68,8 @@ std::string nobody_there(const Endpoint& other) {
       other.publishes ? "publishes here, and nobody listens" : "subscribes, and nobody publishes here");
 }
 
-/// Of two names one of which is a slip of the other. Those that differ in a number, or have one letter in
-/// place of another (arm_l, arm_r), are rather two devices.
+/// Returns whether the two names are probably meant to be the same. Names that differ in a number, or have
+/// one letter in place of another (arm_l, arm_r), are rather those of two devices.
 bool is_same_device(std::string_view written, std::string_view device) {
   if (edit_distance(written, device) != 1 || !is_slip(written, device)) return false;
   const auto kept = [](std::string_view name, bool (*keep)(char)) {

@@ -18,6 +18,8 @@
 
 #include <fmt/format.h>
 
+#include "coupler/host/ros1/xmlrpc_calls.hpp"
+
 namespace coupler::host {
 namespace {
 
@@ -29,25 +31,6 @@ constexpr auto interval = std::chrono::seconds(2);
 constexpr unsigned checks_per_update = 5;
 
 std::string master_uri() { return fmt::format("the ROS master at {}", ros::master::getURI()); }
-
-/// The arguments of a call: this node's name, then `texts`.
-template <class... Texts>
-XmlRpcValue call(const Texts&... texts) {
-  XmlRpcValue arguments;
-  arguments[0] = ros::this_node::getName();
-  int i = 1;
-  ((arguments[i++] = std::string(texts)), ...);
-  return arguments;
-}
-
-/// Returns what the master answers, and nothing if it is not there or reports an error.
-std::optional<XmlRpcValue> ask_master(const std::string& method, const XmlRpcValue& arguments) {
-  XmlRpcValue response;
-  XmlRpcValue answer;
-  if (ros::isShuttingDown() || !ros::master::execute(method, arguments, response, answer, false))
-    return std::nullopt;
-  return answer;
-}
 
 /// Returns the names in the list of [name, [node, …]] that have this node.
 std::vector<std::string> own_of(XmlRpcValue& all) {
@@ -97,7 +80,7 @@ void connect_to_publishers(const std::string& own_uri, const std::string& topic,
   std::string host;
   std::uint32_t port = 0;
   if (!ros::network::splitURI(own_uri, host, port)) return;
-  XmlRpcValue arguments = call(topic);
+  XmlRpcValue arguments = call_arguments(topic);
   arguments[2] = publishers;
   XmlRpcValue ignored;
   XmlRpc::XmlRpcClient self(host.c_str(), static_cast<int>(port), "/");
@@ -116,15 +99,15 @@ Registrations::Known Registrations::check() const {
   XmlRpcValue response;
   XmlRpcValue ignored;
   const std::string& name = ros::this_node::getName();
-  const bool known = ros::master::execute("lookupNode", call(name), response, ignored, false);
+  const bool known = ros::master::execute("lookupNode", call_arguments(name), response, ignored, false);
   if (known) return static_cast<std::string&>(response[2]) == own_uri_ ? Known::yes : Known::by_another;
   const bool answered = response.valid() && response.getType() == XmlRpcValue::TypeArray;
   return answered ? Known::no : Known::no_master;
 }
 
 void Registrations::update() {
-  auto state = ask_master("getSystemState", call());
-  auto types = ask_master("getTopicTypes", call());
+  auto state = ask_master("getSystemState", call_arguments());
+  auto types = ask_master("getTopicTypes", call_arguments());
   if (!state || !types) return;
   published_ = own_of((*state)[0]);
   duplicates_ = duplicates_of(published_, (*state)[0]);
@@ -149,11 +132,11 @@ bool Registrations::restore() const {
   if (parameters_.valid() && !ros::param::has(ros::this_node::getName()))
     ros::param::set(ros::this_node::getName(), parameters_);
   for (const std::string& service : services_)
-    all &= ask_master("registerService", call(service, service_uri_, own_uri_)).has_value();
+    all &= ask_master("registerService", call_arguments(service, service_uri_, own_uri_)).has_value();
   for (const std::string& topic : published_)
-    all &= ask_master("registerPublisher", call(topic, type_of(topic), own_uri_)).has_value();
+    all &= ask_master("registerPublisher", call_arguments(topic, type_of(topic), own_uri_)).has_value();
   for (const std::string& topic : subscribed_) {
-    const auto publishers = ask_master("registerSubscriber", call(topic, type_of(topic), own_uri_));
+    const auto publishers = ask_master("registerSubscriber", call_arguments(topic, type_of(topic), own_uri_));
     all &= publishers.has_value();
     if (publishers) connect_to_publishers(own_uri_, topic, *publishers);
   }

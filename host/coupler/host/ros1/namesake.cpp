@@ -5,7 +5,6 @@
 #include <XmlRpcSocket.h>
 #include <ros/console.h>
 #include <ros/init.h>
-#include <ros/master.h>
 #include <ros/this_node.h>
 #include <ros/xmlrpc_manager.h>
 
@@ -16,7 +15,7 @@
 
 #include <fmt/format.h>
 
-#include "coupler/host/ros1/node_calls.hpp"
+#include "coupler/host/ros1/xmlrpc_calls.hpp"
 #include "coupler/map/printable.hpp"
 
 namespace coupler::host {
@@ -33,10 +32,9 @@ void use_address_family() {
 /// Returns the topics that the master knows to be published by the node of this name and by no other one.
 std::set<std::string> topics_of_its_own() {
   std::set<std::string> topics;
-  XmlRpcValue arguments, response, state;
-  arguments[0] = ros::this_node::getName();
-  if (!ros::master::execute("getSystemState", arguments, response, state, false)) return topics;
-  XmlRpcValue& published = state[0];  // [[topic, [node, …]], …]
+  auto state = ask_master("getSystemState", call_arguments());
+  if (!state) return topics;
+  XmlRpcValue& published = (*state)[0];  // [[topic, [node, …]], …]
   for (int i = 0; i < published.size(); ++i) {
     XmlRpcValue& nodes = published[i][1];
     if (nodes.size() == 1 && static_cast<std::string&>(nodes[0]) == ros::this_node::getName())
@@ -66,12 +64,11 @@ std::string end_text(const std::string& reason) {
     return fmt::format("told to end: {}", printable_lines(reason));
   return fmt::format(
       "another node has started with the name {}, and so the ROS master ends this one: start it once, or "
-      "give "
-      "each driver a name of its own (--name)",
+      "give each driver a name of its own (--name)",
       ros::this_node::getName());
 }
 
-/// What roscpp does, but with the remedy.
+/// Ends the node as roscpp does, and says why.
 void shut_down(XmlRpcValue& arguments, XmlRpcValue& result) {
   if (arguments.getType() == XmlRpcValue::TypeArray && arguments.size() > 1) {
     ROS_WARN("%s", end_text(static_cast<std::string&>(arguments[1])).c_str());

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "coupler/host/ros1/node_calls.hpp"
+#include "coupler/host/ros1/xmlrpc_calls.hpp"
 
 namespace coupler::host {
 namespace {

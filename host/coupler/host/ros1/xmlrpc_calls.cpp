@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/ros1/node_calls.hpp"
+#include "coupler/host/ros1/xmlrpc_calls.hpp"
 
 #include <XmlRpcClient.h>
 #include <XmlRpcDispatch.h>
 #include <ros/init.h>
 #include <ros/master.h>
 #include <ros/network.h>
-#include <ros/this_node.h>
 
 #include <cstdint>
 #include <memory>
@@ -20,29 +19,27 @@ using XmlRpc::XmlRpcDispatch;
 using XmlRpc::XmlRpcValue;
 
 constexpr int most_waits = 20;
-constexpr double wait = 0.05;  ///< s
-
-XmlRpcValue own_name() {
-  XmlRpcValue arguments;
-  arguments[0] = ros::this_node::getName();
-  return arguments;
-}
+constexpr double longest_wait = 0.05;  ///< s
 
 }  // namespace
 
-std::string uri_of(const std::string& node, bool wait_for_master) {
-  XmlRpcValue arguments = own_name();
-  arguments[1] = node;
+std::optional<XmlRpcValue> ask_master(const std::string& method, const XmlRpcValue& arguments, bool wait) {
   XmlRpcValue response;
-  XmlRpcValue uri;
-  if (!ros::master::execute("lookupNode", arguments, response, uri, wait_for_master)) return {};
-  return uri.getType() == XmlRpcValue::TypeString ? static_cast<std::string&>(uri) : std::string();
+  XmlRpcValue answer;
+  if (ros::isShuttingDown() || !ros::master::execute(method, arguments, response, answer, wait))
+    return std::nullopt;
+  return answer;
+}
+
+std::string uri_of(const std::string& node, bool wait_for_master) {
+  auto uri = ask_master("lookupNode", call_arguments(node), wait_for_master);
+  return uri && uri->getType() == XmlRpcValue::TypeString ? static_cast<std::string&>(*uri) : std::string();
 }
 
 void make(std::vector<NodeCall>& calls) {
   std::vector<std::unique_ptr<XmlRpc::XmlRpcClient>> clients;  // outlive the dispatch, which refers to them
   XmlRpcDispatch dispatch;
-  const XmlRpcValue arguments = own_name();
+  const XmlRpcValue arguments = call_arguments();
   for (const NodeCall& call : calls) {
     std::string host;
     std::uint32_t port = 0;
@@ -54,7 +51,8 @@ void make(std::vector<NodeCall>& calls) {
     dispatch.addSource(client.get(), XmlRpcDispatch::WritableEvent | XmlRpcDispatch::Exception);
   }
   // work() returns at once when all have answered.
-  for (int i = 0; i < most_waits && !Shutdown::requested && !ros::isShuttingDown(); ++i) dispatch.work(wait);
+  for (int i = 0; i < most_waits && !Shutdown::requested && !ros::isShuttingDown(); ++i)
+    dispatch.work(longest_wait);
   for (std::size_t i = 0; i < calls.size(); ++i) {
     if (!clients[i]) continue;
     XmlRpcValue answer;

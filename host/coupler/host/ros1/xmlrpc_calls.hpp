@@ -1,12 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <XmlRpcValue.h>
+#include <ros/this_node.h>
 
 namespace coupler::host {
+
+/// Returns the arguments of a call to the master or to a node: this node's name, then `texts`.
+template <class... Texts>
+XmlRpc::XmlRpcValue call_arguments(const Texts&... texts) {
+  XmlRpc::XmlRpcValue arguments;
+  arguments[0] = ros::this_node::getName();
+  int i = 1;
+  ((arguments[i++] = std::string(texts)), ...);
+  return arguments;
+}
+
+/// Returns what the master answers; nothing if it reports an error, or is not there and is not waited for.
+std::optional<XmlRpc::XmlRpcValue> ask_master(const std::string& method, const XmlRpc::XmlRpcValue& arguments,
+                                              bool wait = false);
 
 /// Returns the URI of a node; empty if the master does not know it, or does not answer, unless it is waited
 /// for.
