@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -18,6 +17,25 @@ HeldRequest held(const std::vector<LineSpec>& lines) {
   HeldRequest held;
   for (const LineSpec& line : lines) held.lines.push_back(held_as(line));
   return held;
+}
+
+}  // namespace
+
+HeldLine held_as(const LineSpec& wanted) {
+  const Line& line = wanted.point->line;
+  return {
+      wanted.line.chip->name, wanted.line.offset, is_output(wanted), line.active_low, line.bias, line.drive,
+      line.debounce,          wanted.counted,     wanted.watched,    wanted.point};
+}
+
+bool is_same_line(const HeldLine& a, const HeldLine& b) { return a.chip == b.chip && a.offset == b.offset; }
+
+bool is_same_request(const HeldLine& a, const HeldLine& b) {
+  const auto settings = [](const HeldLine& line) {
+    return std::tie(line.output, line.active_low, line.bias, line.drive, line.debounce, line.counted,
+                    line.watched);
+  };
+  return is_same_line(a, b) && settings(a) == settings(b);
 }
 
 WiredOutputs wired_outputs(std::shared_ptr<OutputGroup> group, const std::vector<LineSpec>& lines,
@@ -39,41 +57,6 @@ WiredInputs sampled_inputs(std::unique_ptr<InputGroup> plain, const std::vector<
   WiredInputs wired = wired_inputs(std::move(group), lines);
   wired.request.sampled = true;
   return wired;
-}
-
-/// The lines that points of the map want of a request that was lost, where they are now. nullopt: not all of
-/// them are there.
-std::optional<std::vector<LineSpec>> find_again(const HeldRequest& held, const Inventory& inventory) {
-  std::vector<LineSpec> found;
-  for (const HeldLine& line : held.lines) {
-    if (line.point == nullptr) continue;
-    const auto again = inventory.find(line.point->line);
-    if (!again) return std::nullopt;
-    const LineSpec wanted{line.point, *again, line.counted, 0, line.watched && !held.sampled};
-    if (!found.empty() && !backend::fits(found, wanted)) return std::nullopt;
-    found.push_back(wanted);
-  }
-  if (found.empty()) return std::nullopt;
-  return found;
-}
-
-}  // namespace
-
-HeldLine held_as(const LineSpec& wanted) {
-  const Line& line = wanted.point->line;
-  return {
-      wanted.line.chip->name, wanted.line.offset, is_output(wanted), line.active_low, line.bias, line.drive,
-      line.debounce,          wanted.counted,     wanted.watched,    wanted.point};
-}
-
-bool is_same_line(const HeldLine& a, const HeldLine& b) { return a.chip == b.chip && a.offset == b.offset; }
-
-bool is_same_request(const HeldLine& a, const HeldLine& b) {
-  const auto settings = [](const HeldLine& line) {
-    return std::tie(line.output, line.active_low, line.bias, line.drive, line.debounce, line.counted,
-                    line.watched);
-  };
-  return is_same_line(a, b) && settings(a) == settings(b);
 }
 
 LineRequests::Prepared LineRequests::prepare_next(const Map& map, bool safe, Log& log) {
@@ -146,75 +129,6 @@ void LineRequests::add_missing(const std::vector<LineSpec>& lines, bool readback
     missing.request.lost = true;
     lines_.add(std::move(missing));
   }
-}
-
-bool LineRequests::reconnect(bool safe) {
-  const bool lost = lose();
-  return renew(safe) || lost;
-}
-
-bool LineRequests::lose() {
-  bool any = false;
-  for (std::size_t i = 0; i < lines_.output_groups(); ++i) {
-    if (lines_.outputs(i).request.lost || lines_.outputs(i).group->is_plugged()) continue;
-    lines_.lose_outputs(i);
-    any = true;
-  }
-  for (std::size_t i = 0; i < lines_.input_groups(); ++i) {
-    if (lines_.inputs(i).request.lost || lines_.inputs(i).group->is_plugged()) continue;
-    lines_.lose_inputs(i);
-    any = true;
-  }
-  return any;
-}
-
-bool LineRequests::renew(bool safe) {
-  std::optional<Inventory> inventory;  // it takes time to read, and is seldom needed
-  const auto find = [&](const HeldRequest& held) {
-    if (!held.lost) return std::optional<std::vector<LineSpec>>();
-    if (!inventory) inventory = backend::chips();
-    return find_again(held, *inventory);
-  };
-  bool any = false;
-  for (std::size_t i = 0; i < lines_.output_groups(); ++i)
-    if (const auto lines = find(lines_.outputs(i).request)) any |= renew_outputs(i, *lines, safe);
-  for (std::size_t i = 0; i < lines_.input_groups(); ++i)
-    if (const auto lines = find(lines_.inputs(i).request)) any |= renew_inputs(i, *lines);
-  return any;
-}
-
-bool LineRequests::renew_outputs(std::size_t group, const std::vector<LineSpec>& lines, bool safe) {
-  std::vector<LineSpec> wanted = lines;
-  for (LineSpec& line : wanted) {
-    std::uint16_t level = 0;
-    lines_.driven(range(*line.point), Span<std::uint16_t>(&level, 1));
-    line.level = safe ? safe_level(line.point->safe, level) : level;
-  }
-  auto made = backend::request_outputs(wanted);
-  if (!made) {
-    fail(lines_.outputs(group).request, made.error());
-    return false;
-  }
-  lines_.renew_outputs(group, wired_outputs(*std::move(made), wanted, lines_.outputs(group).readback));
-  return true;
-}
-
-bool LineRequests::renew_inputs(std::size_t group, const std::vector<LineSpec>& lines) {
-  auto made = backend::request_inputs(lines);
-  if (!made) {
-    fail(lines_.inputs(group).request, made.error());
-    return false;
-  }
-  const bool sampled = !lines.front().watched;
-  lines_.renew_inputs(
-      group, sampled ? sampled_inputs(*std::move(made), lines) : wired_inputs(*std::move(made), lines));
-  return true;
-}
-
-/// Logged once, not at each try.
-void LineRequests::fail(HeldRequest& held, const std::string& error) {
-  if (held.error != error) log_.warn(error);
-  held.error = error;
 }
 
 }  // namespace coupler::device

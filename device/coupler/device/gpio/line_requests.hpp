@@ -21,6 +21,13 @@ bool is_same_line(const HeldLine& a, const HeldLine& b);
 /// Returns whether both are one line, requested in the same way.
 bool is_same_request(const HeldLine& a, const HeldLine& b);
 
+/// A group of these lines, wired to their points.
+WiredOutputs wired_outputs(std::shared_ptr<OutputGroup> group, const std::vector<LineSpec>& lines,
+                           bool readback);
+WiredInputs wired_inputs(std::shared_ptr<InputGroup> group, const std::vector<LineSpec>& lines);
+/// The same of inputs that report no edges.
+WiredInputs sampled_inputs(std::unique_ptr<InputGroup> plain, const std::vector<LineSpec>& lines);
+
 /// GPIO lines of this machine, each held by one of several requests.
 class LineRequests : public Wiring {
  public:
