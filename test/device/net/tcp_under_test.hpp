@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "coupler/device/core/server.hpp"
+#include "coupler/device/net/allow_list.hpp"
+#include "coupler/device/net/listener.hpp"
 #include "coupler/device/net/tcp_server.hpp"
 #include "test/device/core/fake_log.hpp"
 #include "test/device/core/node_under_test.hpp"
@@ -30,6 +32,20 @@ inline Pdu adu(std::uint16_t transaction, const Pdu& pdu) {
 /// Reads holding registers 0 and 1, and the reply while they are 0.
 inline Pdu question(std::uint16_t transaction) { return adu(transaction, pdu(3, {0, 2})); }
 inline Pdu answer_to(std::uint16_t transaction) { return adu(transaction, {3, 4, 0, 0, 0, 0}); }
+
+/// Where a client is, as its socket tells it.
+inline sockaddr_storage ipv4(const char* address) {
+  sockaddr_storage peer{};
+  peer.ss_family = AF_INET;
+  EXPECT_EQ(::inet_pton(AF_INET, address, &reinterpret_cast<sockaddr_in&>(peer).sin_addr), 1);
+  return peer;
+}
+inline sockaddr_storage ipv6(const char* address) {
+  sockaddr_storage peer{};
+  peer.ss_family = AF_INET6;
+  EXPECT_EQ(::inet_pton(AF_INET6, address, &reinterpret_cast<sockaddr_in6&>(peer).sin6_addr), 1);
+  return peer;
+}
 
 /// A client as rude as the test wants.
 class Client {

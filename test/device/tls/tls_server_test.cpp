@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "coupler/device/net/client_address.hpp"
 #include "coupler/device/tls/tls_server.hpp"
 #include "test/common/tls/tls_pair.hpp"
 #include "test/device/core/fake_log.hpp"

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/device/net/client_socket.hpp"
 
-#include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
-
-#include <array>
 
 namespace coupler::device {
 
@@ -31,14 +28,6 @@ std::optional<sockaddr_storage> peer_of(int socket) {
   socklen_t size = sizeof peer;
   if (::getpeername(socket, reinterpret_cast<sockaddr*>(&peer), &size) != 0) return std::nullopt;
   return peer;
-}
-
-std::string host_of(const sockaddr_storage& peer) {
-  std::array<char, NI_MAXHOST> host{};
-  if (::getnameinfo(reinterpret_cast<const sockaddr*>(&peer), sizeof peer, host.data(), host.size(), nullptr,
-                    0, NI_NUMERICHOST) != 0)
-    return "a client";
-  return host.data();
 }
 
 }  // namespace coupler::device

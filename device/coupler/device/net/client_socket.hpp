@@ -4,7 +4,6 @@
 #include <sys/socket.h>
 
 #include <optional>
-#include <string>
 
 namespace coupler::device {
 
@@ -20,8 +19,5 @@ void notice_end_soon(int socket);
 
 /// Returns the address at the other end of a client's socket; nullopt if the client has left.
 std::optional<sockaddr_storage> peer_of(int socket);
-
-/// The address of a client as text; "a client" if it has none.
-std::string host_of(const sockaddr_storage& peer);
 
 }  // namespace coupler::device

@@ -12,6 +12,7 @@
 
 #include "coupler/base/descriptor.hpp"
 #include "coupler/codec/text.hpp"
+#include "coupler/device/net/client_address.hpp"
 #include "coupler/device/net/client_socket.hpp"
 
 namespace coupler::device {

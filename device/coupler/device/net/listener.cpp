@@ -7,18 +7,16 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <memory>
-#include <optional>
+#include <utility>
 
 namespace coupler::device {
 namespace {
 
 constexpr int backlog = SOMAXCONN;
-constexpr std::size_t ipv6_network = 8;  ///< bytes of the /64
 
 std::string listen_error(const std::string& address, std::uint16_t port, const char* option, int error) {
   const std::string where = fmt::format("{}port {}", address.empty() ? "" : address + " ", port);
@@ -64,48 +62,7 @@ tl::expected<Descriptor, int> open(const addrinfo& info) {
   return socket;
 }
 
-/// The address of a connected socket's other end; an IPv4 address as IPv6 has it (::ffff:10.0.0.7). nullopt:
-/// it has no IP address.
-std::optional<IpAddress> address_of(const sockaddr_storage& peer) {
-  IpAddress address{};
-  if (peer.ss_family == AF_INET6) {
-    const auto& ipv6 = reinterpret_cast<const sockaddr_in6&>(peer);
-    std::memcpy(address.data(), &ipv6.sin6_addr, address.size());
-    return address;
-  }
-  if (peer.ss_family != AF_INET) return std::nullopt;
-  const auto& ipv4 = reinterpret_cast<const sockaddr_in&>(peer);
-  address[10] = address[11] = 0xFF;
-  std::memcpy(&address[12], &ipv4.sin_addr, 4);
-  return address;
-}
-
 }  // namespace
-
-tl::expected<AllowList, std::string> AllowList::of(const Map& map) {
-  std::vector<Network> networks;
-  for (const std::string_view text : map.service.allow) {
-    const auto network = parse_network(text);
-    if (!network)
-      return tl::unexpected(
-          fmt::format("'allow': '{}' {}; {}", text, network.error().what, network.error().remedy));
-    networks.push_back(*network);
-  }
-  return AllowList(std::move(networks));
-}
-
-bool AllowList::admits(const sockaddr_storage& peer) const {
-  if (networks_.empty()) return true;
-  const auto address = address_of(peer);
-  return address && std::any_of(networks_.begin(), networks_.end(),
-                                [&](const Network& network) { return network.contains(*address); });
-}
-
-IpAddress origin_of(const sockaddr_storage& peer) {
-  IpAddress origin = address_of(peer).value_or(IpAddress{});
-  if (!is_ipv4(origin)) std::fill(origin.begin() + ipv6_network, origin.end(), std::uint8_t{0});
-  return origin;
-}
 
 tl::expected<Listener, std::string> Listener::share() const {
   Descriptor other(::fcntl(socket.get(), F_DUPFD_CLOEXEC, 0));

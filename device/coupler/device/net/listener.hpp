@@ -1,39 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a node listens, and who may connect.
+// Where a node listens.
 #pragma once
-
-#include <sys/socket.h>
 
 #include <cstdint>
 #include <string>
 #include <tl/expected.hpp>
-#include <utility>
-#include <vector>
 
 #include "coupler/base/descriptor.hpp"
-#include "coupler/map/map.hpp"
-#include "coupler/map/network.hpp"
+#include "coupler/device/net/allow_list.hpp"
 
 namespace coupler::device {
-
-/// The networks that may connect; an empty list admits everyone.
-class AllowList {
- public:
-  AllowList() = default;
-  explicit AllowList(std::vector<Network> networks) : networks_(std::move(networks)) {}
-
-  /// The list of the map's `allow`. The error names what is not an address.
-  static tl::expected<AllowList, std::string> of(const Map& map);
-
-  bool admits(const sockaddr_storage& peer) const;
-
- private:
-  std::vector<Network> networks_;
-};
-
-/// Returns what counts as one client when connections are shared out: an IPv4 address, or the /64 of an IPv6
-/// address, since a machine can choose freely among the 2^64 addresses of its network.
-IpAddress origin_of(const sockaddr_storage& peer);
 
 /// A non-blocking socket that listens.
 struct Listener {

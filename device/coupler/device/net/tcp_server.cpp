@@ -13,6 +13,7 @@
 #include <tuple>
 #include <utility>
 
+#include "coupler/device/net/client_address.hpp"
 #include "coupler/device/net/client_socket.hpp"
 
 namespace coupler::device {

@@ -9,6 +9,7 @@
 
 #include "coupler/codec/number.hpp"
 #include "coupler/device/core/image.hpp"
+#include "coupler/device/net/allow_list.hpp"
 #include "coupler/device/node/this_machine.hpp"
 #include "coupler/map/identity.hpp"
 

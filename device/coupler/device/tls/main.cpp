@@ -14,6 +14,7 @@
 
 #include "coupler/base/standard_files.hpp"
 #include "coupler/device/log/stderr_log.hpp"
+#include "coupler/device/net/allow_list.hpp"
 #include "coupler/device/net/message.hpp"
 #include "coupler/device/tls/expiry_notice.hpp"
 #include "coupler/device/tls/tls_server.hpp"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "coupler/base/descriptor.hpp"
+#include "coupler/device/net/client_address.hpp"
 #include "coupler/tls/alert.hpp"
 
 namespace coupler::device {

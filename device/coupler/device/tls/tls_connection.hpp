@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 
-#include "coupler/device/net/listener.hpp"
 #include "coupler/device/net/loop.hpp"
 #include "coupler/device/net/open_connection.hpp"
 #include "coupler/map/network.hpp"

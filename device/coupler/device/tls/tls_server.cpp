@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/device/net/client_address.hpp"
 #include "coupler/device/net/client_socket.hpp"
 #include "coupler/map/nearest.hpp"
 #include "coupler/tls/alert.hpp"

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "coupler/device/net/listener.hpp"
+#include "coupler/device/net/allow_list.hpp"
 #include "test/device/net/tcp_under_test.hpp"
 
 namespace coupler::device {
@@ -19,20 +19,6 @@ AllowList allow(std::initializer_list<const char*> ranges) {
     if (network) networks.push_back(*network);
   }
   return AllowList(networks);
-}
-
-sockaddr_storage ipv4(const char* address) {
-  sockaddr_storage peer{};
-  peer.ss_family = AF_INET;
-  EXPECT_EQ(::inet_pton(AF_INET, address, &reinterpret_cast<sockaddr_in&>(peer).sin_addr), 1);
-  return peer;
-}
-
-sockaddr_storage ipv6(const char* address) {
-  sockaddr_storage peer{};
-  peer.ss_family = AF_INET6;
-  EXPECT_EQ(::inet_pton(AF_INET6, address, &reinterpret_cast<sockaddr_in6&>(peer).sin6_addr), 1);
-  return peer;
 }
 
 TEST(AllowList, Without_names_it_admits_everyone) {
@@ -71,17 +57,6 @@ TEST(AllowList, What_is_no_address_in_allow_is_named) {
   EXPECT_THAT(list.error(), HasSubstr("'allow': 'gripper' is not an IP address"));
   map.service.allow = Span<const std::string_view>(allow).first(1);
   EXPECT_TRUE(AllowList::of(map).has_value());
-}
-
-TEST(Origin, IPv4_in_either_form_is_one_and_each_address_is_another) {
-  EXPECT_EQ(origin_of(ipv4("10.0.0.7")), origin_of(ipv6("::ffff:10.0.0.7")));
-  EXPECT_NE(origin_of(ipv4("10.0.0.7")), origin_of(ipv4("10.0.0.8")));
-}
-
-TEST(Origin, Of_IPv6_it_is_the_network_of_64_bits) {
-  EXPECT_EQ(origin_of(ipv6("fd00:1:2:3::7")), origin_of(ipv6("fd00:1:2:3:ffff::8")));
-  EXPECT_NE(origin_of(ipv6("fd00:1:2:3::7")), origin_of(ipv6("fd00:1:2:4::7")));
-  EXPECT_NE(origin_of(ipv6("::1")), origin_of(ipv4("0.0.0.1")));
 }
 
 TEST(Accepting, Who_is_not_on_the_list_is_closed_at_once_counted_and_named_once) {
