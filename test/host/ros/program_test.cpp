@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "coupler/host/ros/program.hpp"
+#include "coupler/host/ros/shutdown.hpp"
 
 namespace coupler::host {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "coupler/codec/text.hpp"
 #include "coupler/host/ros/device_panel.hpp"
-#include "coupler/host/ros/program.hpp"
+#include "coupler/host/ros/shutdown.hpp"
 #include "coupler/host/ros/start_progress.hpp"
 #include "coupler/host/ros/status.hpp"
 #include "coupler/map/loader/load.hpp"

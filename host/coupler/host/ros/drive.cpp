@@ -20,6 +20,7 @@
 #include "coupler/host/modbus/make_links.hpp"
 #include "coupler/host/ros/device_driver.hpp"
 #include "coupler/host/ros/program.hpp"
+#include "coupler/host/ros/shutdown.hpp"
 
 namespace coupler::host {
 namespace {
@@ -140,7 +141,7 @@ int drive(const Devices& devices, Node& node) {
   const bool safe =
       stop_all(drivers, &DeviceDriver::stop);  // first: a ROS or a disk that hangs may hold up what follows
   const int exit_code = !safe ? not_safe : failure ? wrong_input : 0;
-  Shutdown::begin_to_end(exit_code, std::chrono::seconds(2));
+  Shutdown::begin_to_end(exit_code, patience_after_outputs);
   if (failure) node.log(Level::error, "the driver has to end: " + *failure);
   for (const auto& driver : drivers) driver->end_followers();
   if (Shutdown::has_failed_thread) ::_exit(exit_code);  // it stands still, and would be waited for

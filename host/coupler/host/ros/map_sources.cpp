@@ -18,6 +18,7 @@
 #include "coupler/host/ros/diagnostics.hpp"
 #include "coupler/host/ros/place_check.hpp"
 #include "coupler/host/ros/program.hpp"
+#include "coupler/host/ros/shutdown.hpp"
 #include "coupler/map/diagnostic.hpp"
 #include "coupler/map/loader/load.hpp"
 #include "coupler/map/node_address.hpp"

@@ -12,7 +12,7 @@
 
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/ros/node.hpp"
-#include "coupler/host/ros/program.hpp"
+#include "coupler/host/ros/shutdown.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::host {

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "coupler/host/ros/program.hpp"
+#include "coupler/host/ros/shutdown.hpp"
 
 namespace coupler::host {
 namespace {
