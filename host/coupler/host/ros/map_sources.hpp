@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From settings to devices: which maps there are, what holds for each, and the name of the node.
+// From settings to devices: which maps there are, and what holds for each.
 #pragma once
 
 #include <deque>
@@ -47,11 +47,5 @@ using Devices = std::deque<DeviceConfig>;  // not a vector: each stays where it 
 tl::expected<Devices, std::string> configure(
     std::vector<MapSource> sources,
     const std::function<tl::expected<Settings, std::string>(std::string_view name)>& settings_of);
-
-/// `<name>_driver`: two drivers must not have one name.
-std::string node_name(std::string_view map_name);
-/// Returns the name of the driver for a device that serves its map itself, as device.launch has it:
-/// "coupler_192_168_1_17_driver".
-std::string node_name_by_address(const Settings& settings);
 
 }  // namespace coupler::host

@@ -12,6 +12,7 @@
 #include "coupler/base/what_failed.hpp"
 #include "coupler/host/ros/drive.hpp"
 #include "coupler/host/ros/map_sources.hpp"
+#include "coupler/host/ros/node_name.hpp"
 #include "coupler/host/ros/shutdown.hpp"
 #include "coupler/host/ros2/arguments.hpp"
 #include "coupler/host/ros2/node.hpp"
