@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <deque>
 #include <optional>
 
@@ -9,6 +10,9 @@
 #include "coupler/map/map.hpp"
 
 namespace coupler::host {
+
+/// Until a deadman value that the device would not carry out is written again.
+constexpr auto deadman_retry = std::chrono::seconds(1);
 
 /// The deadmen of the points that have one. The first message arms a deadman, and so does the first message
 /// after it has expired.

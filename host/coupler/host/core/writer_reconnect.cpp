@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/host/core/deadmen.hpp"
 #include "coupler/host/core/writer.hpp"
 
 namespace coupler::host {
@@ -11,10 +12,7 @@ namespace {
 
 using Outcome = WriteResult::Outcome;
 
-/// Until a deadman value that the device would not carry out is written again.
-constexpr auto deadman_retry = std::chrono::seconds(1);
-
-/// The same of one that ended two connections in a row.
+/// As deadman_retry, for a value that ended two connections in a row.
 constexpr auto suspect_retry = std::chrono::seconds(10);
 
 /// Returns what happens to a write that waits while there is no connection.
