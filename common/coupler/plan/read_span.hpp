@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -44,17 +46,18 @@ inline modbus::Range read_extent(const Map& map, const Point& point) {
 /// Returns the range from the first address of either to the last one of either.
 modbus::Range hull(modbus::Range a, modbus::Range b);
 
+/// Calls `at_hole` with the count of points before each hole, and the hole.
+template <class AtHole>
+void for_each_hole(const ReadSpan& span, const Map& map, AtHole&& at_hole) {
+  std::uint32_t end = span.range.start();
+  for (std::size_t i = 0; i < span.points.size(); ++i) {
+    const modbus::Range range = read_extent(map, map.points[span.points[i]]);
+    if (range.start() > end) at_hole(i, modbus::Range::of(end, range.start() - end));
+    end = std::max(end, range.end());
+  }
+}
+
 /// The addresses inside a request that no point of it needs.
 std::vector<modbus::Range> holes(const ReadSpan& span, const Map& map);
-
-/// The requests to try instead of one that the device rejects.
-struct Split {
-  std::vector<ReadSpan> pieces;         ///< two, or none if the request holds one point only
-  std::optional<modbus::Range> hole{};  ///< the addresses between the pieces, which neither asks for
-};
-
-/// Parts the points of `span` where addresses lie between them that no point of it needs, at the place
-/// nearest to the middle; if there is none, as near to the middle as points that overlap stay together.
-Split split(const ReadSpan& span, const Map& map);
 
 }  // namespace coupler::plan

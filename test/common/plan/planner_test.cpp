@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "coupler/plan/planner.hpp"
+#include "coupler/plan/split_span.hpp"
 #include "test/common/plan/tables.hpp"
 #include "test/fakes/map_builder.hpp"
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "coupler/plan/read_span.hpp"
+#include "coupler/plan/split_span.hpp"
 
 namespace coupler::host {
 

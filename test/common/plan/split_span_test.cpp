@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "coupler/plan/planner.hpp"
-#include "coupler/plan/read_span.hpp"
+#include "coupler/plan/split_span.hpp"
 #include "test/common/plan/tables.hpp"
 #include "test/fakes/map_builder.hpp"
 
