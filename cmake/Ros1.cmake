@@ -13,10 +13,10 @@ if(CMAKE_SOURCE_DIR STREQUAL PROJECT_SOURCE_DIR AND
   set(CATKIN_DEVEL_PREFIX ${PROJECT_BINARY_DIR}/catkin)
   set(CATKIN_BUILD_BINARY_PACKAGE ON)  # no setup.bash of a workspace is installed, nor to another prefix than was asked for
 endif()
-find_package(catkin QUIET COMPONENTS roscpp std_msgs std_srvs diagnostic_updater message_generation)
+find_package(catkin QUIET COMPONENTS actionlib actionlib_msgs roscpp std_msgs std_srvs diagnostic_updater message_generation)
 if(NOT catkin_FOUND)
   if(NOT COUPLER_ROS STREQUAL AUTO)
-    message(FATAL_ERROR "COUPLER_ROS=${COUPLER_ROS}, but catkin with roscpp, std_msgs, std_srvs, diagnostic_updater and "
+    message(FATAL_ERROR "COUPLER_ROS=${COUPLER_ROS}, but catkin with actionlib, roscpp, std_msgs, std_srvs, diagnostic_updater and "
                         "message_generation was not found (scripts/install-packages ros)")
   endif()
   return()
@@ -25,11 +25,12 @@ set(COUPLER_WITH_ROS 1)
 
 add_message_files(DIRECTORY host/msg FILES ${messages})
 add_service_files(DIRECTORY host/srv FILES ${services})
-generate_messages(DEPENDENCIES std_msgs)
-catkin_package(CATKIN_DEPENDS roscpp std_msgs std_srvs diagnostic_updater message_runtime
+add_action_files(DIRECTORY host/action FILES ${actions})
+generate_messages(DEPENDENCIES actionlib_msgs std_msgs)
+catkin_package(CATKIN_DEPENDS actionlib actionlib_msgs roscpp std_msgs std_srvs diagnostic_updater message_runtime
                CFG_EXTRAS ${PROJECT_NAME}-extras.cmake)
 # Where rosmsg and rossrv look for them; our folders are not at the top.
-foreach(kind msg srv)
+foreach(kind action msg srv)
   file(COPY host/${kind} DESTINATION ${CATKIN_DEVEL_PREFIX}/share/${PROJECT_NAME})
   install(DIRECTORY host/${kind} DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION} COMPONENT ros)
 endforeach()
@@ -47,6 +48,7 @@ if(plain)
   set(package ${devel}/share/${PROJECT_NAME})
   link(${PROJECT_SOURCE_DIR}/package.xml ${package}/package.xml)
   link(${PROJECT_SOURCE_DIR}/config/example-node.yaml ${package}/config/example-node.yaml)
+  link(${PROJECT_SOURCE_DIR}/host/action ${package}/action)
   link(${PROJECT_SOURCE_DIR}/host/msg ${package}/msg)
   link(${PROJECT_SOURCE_DIR}/host/srv ${package}/srv)
   foreach(program coupler_driver coupler-node)

@@ -28,9 +28,9 @@ elseif(NOT "$ENV{AMENT_PREFIX_PATH}" STREQUAL "${COUPLER_AMENT_PREFIX_PATH}")
 endif()
 
 enable_language(C)  # of which a part of the generated code is
-set(interfaces builtin_interfaces diagnostic_msgs rcl_interfaces rosgraph_msgs std_msgs std_srvs)
+set(interfaces action_msgs builtin_interfaces diagnostic_msgs rcl_interfaces rosgraph_msgs std_msgs std_srvs)
 set(missing)
-foreach(package ament_cmake rcl rcl_yaml_param_parser rcutils rmw rosidl_default_generators rosidl_typesupport_cpp ${interfaces})
+foreach(package ament_cmake rcl rcl_action rcl_yaml_param_parser rcutils rmw rosidl_default_generators rosidl_typesupport_cpp ${interfaces})
   find_package(${package} QUIET)
   if(NOT ${package}_FOUND)
     list(APPEND missing ${package})
@@ -49,7 +49,7 @@ find_package(type_description_interfaces QUIET)  # not in Humble
 
 # The target that generates must have the name of the package.
 set(files)
-foreach(file IN LISTS messages services)
+foreach(file IN LISTS messages services actions)
   string(REGEX REPLACE ".*[.]" "" kind ${file})
   file(READ ${PROJECT_SOURCE_DIR}/host/${kind}/${file} text)
   # ROS 1 has words for these two messages.
@@ -64,7 +64,7 @@ foreach(file IN LISTS messages services)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/host/${kind}/${file})
 endforeach()
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
-rosidl_generate_interfaces(${PROJECT_NAME} ${files} DEPENDENCIES builtin_interfaces std_msgs)
+rosidl_generate_interfaces(${PROJECT_NAME} ${files} DEPENDENCIES action_msgs builtin_interfaces std_msgs)
 if(TARGET ament_cmake_python_build_${PROJECT_NAME}_egg)
   coupler_needs_built(${PROJECT_BINARY_DIR}/ament_cmake_python/${PROJECT_NAME}/${PROJECT_NAME}.egg-info)
 endif()
@@ -81,7 +81,7 @@ set_directory_properties(PROPERTIES COMPILE_DEFINITIONS "")
 add_library(coupler_ros INTERFACE)
 target_compile_definitions(coupler_ros INTERFACE ${definitions})
 target_link_libraries(coupler_ros INTERFACE
-  rcl::rcl rcl_yaml_param_parser::rcl_yaml_param_parser rcutils::rcutils rmw::rmw rosidl_typesupport_cpp::rosidl_typesupport_cpp)
+  rcl::rcl rcl_action::rcl_action rcl_yaml_param_parser::rcl_yaml_param_parser rcutils::rcutils rmw::rmw rosidl_typesupport_cpp::rosidl_typesupport_cpp)
 foreach(package IN LISTS interfaces)
   target_link_libraries(coupler_ros INTERFACE
     ${package}::${package}__rosidl_generator_cpp ${package}::${package}__rosidl_typesupport_cpp)
@@ -104,7 +104,7 @@ list(TRANSFORM loaded PREPEND ${PROJECT_NAME}__)
 add_dependencies(coupler_ros ${loaded})
 
 # For coupler_driver-extras.cmake.in.
-set(coupler_driver_packages rcl rcl_yaml_param_parser rcutils rmw rosidl_typesupport_cpp ${interfaces})
+set(coupler_driver_packages rcl rcl_action rcl_yaml_param_parser rcutils rmw rosidl_typesupport_cpp ${interfaces})
 if(type_description_interfaces_FOUND)
   list(APPEND coupler_driver_packages type_description_interfaces)
 endif()

@@ -83,6 +83,7 @@ constexpr Map map{{
     {poll}, {changes}, {verify},
     {security},  // roles, those of clients without TLS and without a role, files, port
     {read_whole_name},
+    {wait_for},
 }};
 
 }}  // namespace coupler::maps::{name}
@@ -286,7 +287,7 @@ std::string table_source(const Map& map, const Provenance& provenance) {
       arg("coupler_watchdog", coupler_watchdog(map.coupler_watchdog)),
       arg("on_reconnect", enumerator(map.on_reconnect)), arg("on_shutdown", enumerator(map.on_shutdown)),
       arg("poll", enumerator(map.poll)), arg("changes", map.changes), arg("verify", enumerator(map.verify)),
-      arg("listen", literal(map.service.listen)),
+      arg("wait_for", map.wait_for), arg("listen", literal(map.service.listen)),
       arg("allow_name", map.service.allow.empty() ? "{}" : "allow"),
       arg("watchdog", aggregate(map.service.watchdog)), arg("readback", map.service.readback),
       arg("text", literal_lines(map.text, "    ")), arg("map_name", literal(map.name)),

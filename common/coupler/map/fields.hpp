@@ -112,11 +112,11 @@ constexpr auto fields_of(const Limits*) {
 
 /// And `name`, `points`, what has a list of its own, and what a preset or a list fills.
 constexpr auto fields_of(const Map*) {
-  return std::make_tuple(field("on_reconnect", &Map::on_reconnect, "on-reconnect-changed"),
-                         field("on_shutdown", &Map::on_shutdown, "on-shutdown-changed"),
-                         field("poll", &Map::poll, "poll-changed"),
-                         field("changes", &Map::changes, "changes-changed"),
-                         field("verify", &Map::verify, "verify-changed"));
+  return std::make_tuple(
+      field("on_reconnect", &Map::on_reconnect, "on-reconnect-changed"),
+      field("on_shutdown", &Map::on_shutdown, "on-shutdown-changed"),
+      field("poll", &Map::poll, "poll-changed"), field("changes", &Map::changes, "changes-changed"),
+      field("verify", &Map::verify, "verify-changed"), field("wait_for", &Map::wait_for, "wait-for-changed"));
 }
 
 /// And `allow`.

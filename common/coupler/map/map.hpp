@@ -17,7 +17,7 @@ namespace coupler {
 
 /// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
 /// not compile.
-constexpr int model_version = 15;
+constexpr int model_version = 16;
 
 /// The place of the coupler. ROS parameters and arguments override it.
 struct Connection {
@@ -149,6 +149,7 @@ struct Map {
   Verify verify = Verify::require;
   Security security{};
   Span<const TableRange> read_whole{};  ///< by place, none overlaps another: read whole for any point in it
+  bool wait_for = false;                ///< the driver serves an action that waits for values
 };
 
 /// The point of that name, or nullptr.

@@ -91,6 +91,8 @@ TEST(Changes, What_a_side_does_by_itself_is_compatible) {
               ElementsAre("compatible poll-changed : all -> subscribed"));
   EXPECT_THAT(changes_by("rate: 10", "rate: 10\nchanges: off"),
               ElementsAre("compatible changes-changed : true -> false"));
+  EXPECT_THAT(changes_by("rate: 10", "rate: 10\nwait_for: true"),
+              ElementsAre("compatible wait-for-changed : false -> true"));
   EXPECT_THAT(changes_by("units: rpm", "units: rpm, rate: 2"),
               ElementsAre("compatible rate-changed speed:  -> 2 Hz"));
   EXPECT_THAT(changes_by("units: rpm", "units: rpm, stamped: true"),

@@ -264,6 +264,9 @@ constexpr Key keys[] = {
     project("verify", S::map, K::choice, "warn", "what the host does if the device has another map")
         .otherwise("require")
         .one_of<Verify>(),
+    project("wait_for", S::map, K::boolean, "true",
+            "whether the driver serves an action that waits for values")
+        .otherwise("false"),
     project("unreadable", S::map, K::section, "[{table: coils, from: 8, to: 15}]",
             "addresses that the device refuses")
         .lists(S::area),

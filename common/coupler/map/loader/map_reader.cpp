@@ -113,12 +113,11 @@ DraftPoints read_places(const Reader& top, const Entry& root, const PointDefault
   return points;
 }
 
-void check_points(const DraftPoints& points, const Limits& limits, bool addressing_given,
-                  const Context& context) {
-  check_point_names(points, context);
+void check_points(const DraftPoints& points, const Map& head, bool addressing_given, const Context& context) {
+  check_point_names(points, head.wait_for, context);
   check_overlaps(points, context);
   check_lines(points, context);
-  check_sizes(points, limits, context);
+  check_sizes(points, head.limits, context);
   if (!addressing_given) warn_of_modicon_numbers(points, context);
 }
 
@@ -171,7 +170,7 @@ std::optional<MapLayout> read_map(const Entry& file, const MapSource& source, Pl
   for (DraftPoint& draft : points) read_rest(defaults, draft, context);
   if (preset) apply(*preset, points, context);
 
-  check_points(points, head.limits, top.has("addressing"), context);
+  check_points(points, head, top.has("addressing"), context);
   read_coupler_watchdog(top, preset, points, defaults.addressing, head, context);
   const std::vector<SimWire> sim = read_sim(top, points, context);
   check_edges(points, sim, context);

@@ -106,7 +106,7 @@ void check_map_name(std::string_view name, Position at, const Context& context) 
     warn_of_ros1_name(name, at, context);
 }
 
-void check_point_names(const DraftPoints& points, const Context& context) {
+void check_point_names(const DraftPoints& points, bool has_wait_for, const Context& context) {
   FirstOfName first;
   for (const DraftPoint& draft : points) {
     const auto [found, is_new] = first.emplace(draft.point.name, &draft);
@@ -117,7 +117,16 @@ void check_point_names(const DraftPoints& points, const Context& context) {
                              "give every point of the map a name of its own",
                              {{found->second->name_at, "the other is here"}});
   }
-  for (const DraftPoint& draft : points) check_topic(draft, first, context);
+  for (const DraftPoint& draft : points) {
+    check_topic(draft, first, context);
+    const std::string_view name = draft.point.name;
+    if (has_wait_for && name.substr(0, name.find('/')) == wait_for_action)
+      context.problems.warning(
+          draft.name_at,
+          fmt::format("'{}' is also the action that waits for values, and the point takes its place",
+                      wait_for_action),
+          "give the point another name, or leave the key 'wait_for' out");
+  }
 }
 
 }  // namespace coupler::loader

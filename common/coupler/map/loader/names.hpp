@@ -15,12 +15,14 @@ bool is_relative_ros_name(std::string_view name);
 constexpr std::string_view driver_topics[] = {"online", "scheduled", "status"};
 /// A later one, of which a point may have the name; then there is no such topic.
 constexpr std::string_view points_topic = "points";
+constexpr std::string_view wait_for_action = "wait_for";  ///< the same, if the map has it
 bool is_driver_topic(std::string_view name);
 
 /// The map's name is a namespace.
 void check_map_name(std::string_view name, Position at, const Context& context);
 
 /// Points' names are ROS names, unique across the tables, and do not clash with the driver's own topics.
-void check_point_names(const DraftPoints& points, const Context& context);
+/// `has_wait_for`: the driver is to serve that action.
+void check_point_names(const DraftPoints& points, bool has_wait_for, const Context& context);
 
 }  // namespace coupler::loader

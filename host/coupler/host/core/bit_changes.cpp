@@ -164,6 +164,7 @@ void BitChanges::on_gap() {
     forget(told);
     cycle_.read_soon(told.point);
   }
+  sink_.on_gap();
 }
 
 void BitChanges::on_heard(std::uint64_t newest, std::optional<Stamp> stamp) {

@@ -22,6 +22,9 @@ class Sink {
   virtual void on_values(Span<const std::uint32_t> points) = 0;
   /// Says that the table has a new value of this point, because the node has announced a change.
   virtual void on_told(std::uint32_t point) { on_values({&point, 1}); }
+  /// Says that the node has lost changes: nothing is known of the announced points between their last values
+  /// and the next ones.
+  virtual void on_gap() {}
   /// Says that these points could not be read, or that what was read is no value. The table has the exception
   /// or the reason. It may be called again for each attempt.
   virtual void on_no_values(Span<const std::uint32_t> /*points*/, Time /*at*/) {}

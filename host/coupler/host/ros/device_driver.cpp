@@ -8,6 +8,7 @@
 
 #include "coupler/codec/text.hpp"
 #include "coupler/host/ros/device_panel.hpp"
+#include "coupler/host/ros/device_waits.hpp"
 #include "coupler/host/ros/shutdown.hpp"
 #include "coupler/host/ros/start_progress.hpp"
 #include "coupler/host/ros/status.hpp"
@@ -102,6 +103,7 @@ void DeviceDriver::begin(const Followed& followed) {
   if (map_.poll == Poll::subscribed)
     subscribers_.follow([this](std::uint32_t point, bool wanted) {
       forget(point);  // it is not read meanwhile
+      for (const auto& follower : followers_) follower->wanted(point);
       thread_.want(point, wanted);
     });
   subscribers_.on_each([this](std::uint32_t point) { thread_.want(point, true); });
@@ -131,6 +133,9 @@ void DeviceDriver::start_followers(const Followed& followed) {
   };
   if (followed.recording) add(DeviceRecording::start(map_, values_, *followed.recording, report));
   if (followed.panel) add(start_panel(map_, values_, *followed.panel, report));
+  if (can_wait_for(map_))
+    add(DeviceWaits::start(node_, map_, values_, subscribers_,
+                           [this](std::uint32_t point) { thread_.want(point, true); }));
 }
 
 void DeviceDriver::end_followers() {
@@ -186,6 +191,10 @@ void DeviceDriver::publish(Span<const std::uint32_t> points, bool is_told) {
     for (const auto* publishers : {&stamped_, &samples_})
       if (const auto& publisher = (*publishers)[point]) publisher->publish(values_.registers(point), sample);
   }
+}
+
+void DeviceDriver::on_gap() {
+  for (const auto& follower : followers_) follower->sink().on_gap();
 }
 
 void DeviceDriver::on_no_values(Span<const std::uint32_t> points, Time at) {

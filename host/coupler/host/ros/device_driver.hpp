@@ -59,6 +59,7 @@ class DeviceDriver : public Sink {
 
   void on_values(Span<const std::uint32_t> points) override;
   void on_told(std::uint32_t point) override;
+  void on_gap() override;
   void on_no_values(Span<const std::uint32_t> points, Time at) override;
   Time repeat_at(std::uint32_t point) const override;
   void on_identified(Identity::Verdict verdict) override;

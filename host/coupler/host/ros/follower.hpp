@@ -15,6 +15,8 @@ class Follower {
   virtual Sink& sink() = 0;
   /// Receives the counts of the device, some ten times a second while anything changes.
   virtual void report(const DeviceSnapshot& /*device*/, Time /*now*/) {}
+  /// Nobody reads the point any more, or somebody does again. It must not wait for anything.
+  virtual void wanted(std::uint32_t /*point*/) {}
   /// From now on a lost connection is no news.
   virtual void end_comes() {}
   /// After the outputs are safe: takes its time if a disk does.

@@ -20,6 +20,7 @@
 #include "coupler/host/core/sink.hpp"
 #include "coupler/host/core/wall_time.hpp"
 #include "coupler/host/core/write.hpp"
+#include "coupler/host/ros/action.hpp"
 #include "coupler/host/ros/sample.hpp"
 #include "coupler/map/map.hpp"
 
@@ -195,6 +196,9 @@ class Node {
   virtual PublishScheduled advertise_scheduled(const std::string& topic, const Map& map,
                                                const WallTime& wall) = 0;
   virtual std::unique_ptr<ServiceThread> make_service_thread() = 0;
+  /// Serves coupler_driver/WaitFor as long as the result exists.
+  virtual std::unique_ptr<WaitForServer> offer_wait_for(const std::string& name,
+                                                        WaitForServer::Handler handler) = 0;
 
   /// publish_diagnostics() calls `make` of every entry, in the order in which they were added. The entries of
   /// all devices are one message: a publisher of /diagnostics keeps only the newest.

@@ -8,6 +8,7 @@
 #include <coupler_driver/Schedule.h>
 #include <coupler_driver/Scheduled.h>
 #include <coupler_driver/Status.h>
+#include <coupler_driver/WaitForAction.h>
 #include <coupler_driver/Write.h>
 #include <ros/callback_queue.h>
 #include <ros/console.h>
@@ -26,6 +27,7 @@
 #include "coupler/host/ros/node_templates.hpp"
 #include "coupler/host/ros/point_info.hpp"
 #include "coupler/host/ros/topic_depth.hpp"
+#include "coupler/host/ros1/action.hpp"
 #include "coupler/host/ros1/in_place_queue.hpp"
 #include "coupler/host/ros1/logger_service.hpp"
 #include "coupler/host/ros1/messages.hpp"
@@ -226,6 +228,14 @@ Node::PublishScheduled Ros1Node::advertise_scheduled(const std::string& topic, c
 
 std::unique_ptr<ServiceThread> Ros1Node::make_service_thread() {
   return std::make_unique<Ros1ServiceThread>(handle_, remappings_);
+}
+
+std::unique_ptr<WaitForServer> Ros1Node::offer_wait_for(const std::string& name,
+                                                        WaitForServer::Handler handler) {
+  for (const char* topic : {"cancel", "feedback", "goal", "result", "status"})
+    remappings_.add_name(fmt::format("{}/{}", name, topic), false);
+  return std::make_unique<TypedWaitForServer<TypedActionServer<coupler_driver::WaitForAction>>>(
+      handle_, name, std::move(handler));
 }
 
 void Ros1Node::add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) {

@@ -2,6 +2,7 @@
 #include "coupler/host/ros2/node.hpp"
 
 #include <rcutils/logging.h>
+#include <coupler_driver/action/wait_for.hpp>
 #include <coupler_driver/msg/points.hpp>
 #include <coupler_driver/msg/scheduled.hpp>
 #include <coupler_driver/msg/status.hpp>
@@ -27,6 +28,7 @@
 #include "coupler/host/ros/point_info.hpp"
 #include "coupler/host/ros/topic_depth.hpp"
 #include "coupler/host/ros2/messages.hpp"
+#include "coupler/host/ros2/rcl/action.hpp"
 #include "coupler/host/ros2/rcl/service.hpp"
 #include "coupler/map/printable.hpp"
 
@@ -247,6 +249,13 @@ Node::PublishScheduled Ros2Node::advertise_scheduled(const std::string& topic, c
 
 std::unique_ptr<ServiceThread> Ros2Node::make_service_thread() {
   return std::make_unique<Ros2ServiceThread>(node_, remappings_);
+}
+
+std::unique_ptr<WaitForServer> Ros2Node::offer_wait_for(const std::string& name,
+                                                        WaitForServer::Handler handler) {
+  remappings_.add_name(name, false);
+  return std::make_unique<TypedWaitForServer<rcl::TypedActionServer<coupler_driver::action::WaitFor>>>(
+      node_, name, std::move(handler));
 }
 
 void Ros2Node::add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) {

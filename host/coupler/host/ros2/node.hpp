@@ -50,6 +50,8 @@ class Ros2Node : public Node {
   PublishScheduled advertise_scheduled(const std::string& topic, const Map& map,
                                        const WallTime& wall) override;
   std::unique_ptr<ServiceThread> make_service_thread() override;
+  std::unique_ptr<WaitForServer> offer_wait_for(const std::string& name,
+                                                WaitForServer::Handler handler) override;
   void add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) override;
   void publish_diagnostics() override;
   void start() override;

@@ -191,12 +191,15 @@ TEST(TableRange, Areas_are_sorted_and_in_the_addressing_of_the_map) {
 TEST(Link, What_becomes_of_outputs_and_which_points_are_read_is_said_at_the_top) {
   const MapPtr map = load_clean(
       map_of("coils", "p: 1",
-             "on_reconnect: restore\non_shutdown: safe\npoll: subscribed\nchanges: off\nverify: off"));
+             "on_reconnect: restore\non_shutdown: safe\npoll: subscribed\nchanges: off\nverify: off\n"
+             "wait_for: true"));
   EXPECT_EQ(map->map().on_reconnect, OnReconnect::restore);
   EXPECT_EQ(map->map().on_shutdown, OnShutdown::safe);
   EXPECT_EQ(map->map().poll, Poll::subscribed);
   EXPECT_EQ(map->map().verify, Verify::off);
   EXPECT_FALSE(map->map().changes);
+  EXPECT_TRUE(map->map().wait_for);
+  EXPECT_FALSE(load_clean(map_of("coils", "p: 1"))->map().wait_for);
   EXPECT_EQ(load_clean(map_of("coils", "p: 1"))->map().poll, Poll::all);
   EXPECT_TRUE(load_clean(map_of("coils", "p: 1"))->map().changes);
 }
