@@ -117,7 +117,7 @@ tl::expected<Condition, std::string> Condition::parse(const Point& point, std::s
   return condition;
 }
 
-/// Of the first element that differs.
+/// Returns the order of the first element that differs; 0 if none does.
 std::optional<int> Condition::compare(const std::uint16_t* registers) const {
   for (std::size_t i = 0; i < value_.size(); ++i) {
     const auto order = compare_numbers(element(registers + i * registers_of(*point_), *point_), value_[i],

@@ -39,7 +39,7 @@ constexpr Enumeration<Relation, 9> enumeration(Relation) {
            {Relation::changes, "changes"}}};
 }
 
-/// What may be asked of the value of a point. All registers are host_registers() of the point, bits as 0
+/// A condition for the value of a point. All registers are host_registers() of the point, bits as 0
 /// or 1.
 class Condition {
  public:

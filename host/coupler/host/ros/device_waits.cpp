@@ -76,7 +76,7 @@ void DeviceWaits::end() {
   thread_.join();
 }
 
-/// What a goal asks for, or what is wrong with it and the remedy.
+/// Returns what a goal asks for, or what is wrong with it and the remedy.
 tl::expected<WaitGoal, std::string> DeviceWaits::understood(const Goal& goal, Time now) const {
   const auto named = point_named(map_, goal.point);
   if (!named) return tl::unexpected(named.error());

@@ -115,7 +115,7 @@ class TypedActionServer : ActionServer {
 
  private:
   using ResultResponse = typename A::Impl::GetResultService::Response;
-  /// What is asked for the result of a goal.
+  /// The result of a goal, and the requests that wait for it.
   struct Asked {
     std::optional<ResultResponse> response;
     std::vector<RequestId> waiting;
