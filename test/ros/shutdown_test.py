@@ -4,7 +4,6 @@ import contextlib
 import os
 import signal
 import socket
-import time
 import unittest
 
 import rosgraph
@@ -78,25 +77,18 @@ class Shutdown(unittest.TestCase):
             wait_until(lambda: "/large/p0" not in dict(rospy.get_published_topics()), "the good-bye")
 
     def test_while_a_node_that_hangs_is_asked_for_its_types(self):
-        """It is waited for a second where nobody ends the driver."""
         topic = "/shutdown/lamp/write"
         master = rosgraph.Master("/hung")
-
-        def end_takes():
-            with silent_server() as hung, contextlib.ExitStack() as connections:
-                uri = f"http://localhost:{hung.getsockname()[1]}/"
-                master.registerPublisher(topic, "std_msgs/Bool", uri)
-                connections.callback(master.unregisterPublisher, topic, uri)
-                with Peer() as peer, process.Driver(f"_map:={self.map}", f"_port:={peer.port}") as driver:
-                    asked = b""
-                    while b"getPublications" not in asked:  # first it is asked for the topic
-                        connection = connections.enter_context(hung.accept()[0])
-                        asked = connection.recv(4096)
-                    begun = time.monotonic()
-                    self.assert_ends_soon(driver)
-                    return time.monotonic() - begun
-
-        self.assertTrue(any(end_takes() < 0.5 for _ in range(5)))  # not all of them on a machine that is that busy
+        with silent_server() as hung, contextlib.ExitStack() as connections:
+            uri = f"http://localhost:{hung.getsockname()[1]}/"
+            master.registerPublisher(topic, "std_msgs/Bool", uri)
+            connections.callback(master.unregisterPublisher, topic, uri)
+            with Peer() as peer, process.Driver(f"_map:={self.map}", f"_port:={peer.port}") as driver:
+                asked = b""
+                while b"getPublications" not in asked:  # first it is asked for the topic
+                    connection = connections.enter_context(hung.accept()[0])
+                    asked = connection.recv(4096)
+                self.assert_ends_soon(driver)
 
     def test_while_nobody_is_there(self):
         with process.Driver(f"_map:={self.map}", f"_port:={free_port()}") as driver:

@@ -14,7 +14,7 @@ if IS_ROS2:
     from coupler_driver.action import WaitFor
     from rclpy.action import ActionClient
 
-    from support.ros import spun
+    from support.ros import made_by_thread, spun
 
     class _Sent:
         """A goal that was sent."""
@@ -45,7 +45,7 @@ if IS_ROS2:
         return spun.get_topic_names_and_types()
 
     def _client(name):
-        client = ActionClient(spun, WaitFor, name)
+        client = made_by_thread(lambda: ActionClient(spun, WaitFor, name))
         wait_until(lambda: client.wait_for_server(0.1), f"the action {name}")
         return client
 

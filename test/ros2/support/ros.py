@@ -40,6 +40,14 @@ _thread = threading.Thread(target=_spin, daemon=True)
 _thread.start()
 
 
+def made_by_thread(make):
+    """What make() returns, which the thread calls: it sees an action client as soon as that is begun, and ends if that is not
+    whole yet."""
+    made = _executor.create_task(make)
+    wait_until(made.done, "what the thread makes")
+    return made.result()
+
+
 def other_subscribers():
     """The DDS participants, one a process, that subscribe to something: but for this process. The first twelve bytes of an
     endpoint's id are its participant's (DDSI-RTPS 2.3, 9.3.1.5)."""
