@@ -9,7 +9,7 @@
 
 namespace coupler::testing {
 
-static_assert(model_version == 16, "Compare the new fields of the model here, too");
+static_assert(model_version == 17, "Compare the new fields of the model here, too");
 
 /// What fields_of() lists.
 template <class Struct>
@@ -147,6 +147,11 @@ inline void expect_same(const Map& a, const Map& b) {
   }
   expect_same(a.coupler_watchdog, b.coupler_watchdog);
   expect_same(a.security, b.security);
+  ASSERT_EQ(a.tools.size(), b.tools.size());
+  for (std::size_t i = 0; i < a.tools.size(); ++i) {
+    EXPECT_EQ(a.tools[i].name, b.tools[i].name);
+    expect_same_fields(a.tools[i], b.tools[i]);
+  }
 }
 
 }  // namespace coupler::testing

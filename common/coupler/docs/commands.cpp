@@ -87,7 +87,8 @@ std::vector<Command> ros_commands(const Map& map, const std::string& file) {
   constexpr std::string_view std_msgs = "std_msgs/";
   // Messages of several values need a layout or a list of the right length: no line to begin with.
   const auto single = [&](const Point& p) {
-    return is_writable(p) && p.count == 1 && starts_with(ros_message(p), std_msgs);
+    return is_writable(p) && p.count == 1 && starts_with(ros_message(p), std_msgs) &&
+           tool_with_output(map, p.name) == nullptr;
   };
   if (const Point* point = first(map, single)) {
     const std::string topic = fmt::format("/{}/{}/write", map.name, point->name);
@@ -98,6 +99,12 @@ std::vector<Command> ros_commands(const Map& map, const std::string& file) {
                                     message.substr(std_msgs.size()), value)});
     commands.push_back(
         {"the same in ROS 1", fmt::format("rostopic pub --once {} {} {}", topic, message, value)});
+  }
+  if (!map.tools.empty()) {
+    const std::string service = fmt::format("/{}/{}/close", map.name, map.tools[0].name);
+    commands.push_back(
+        {"a tool is closed, in ROS 2", fmt::format("ros2 service call {} std_srvs/srv/Trigger", service)});
+    commands.push_back({"the same in ROS 1", "rosservice call " + service});
   }
   return commands;
 }

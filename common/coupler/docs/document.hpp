@@ -9,6 +9,7 @@
 #include "coupler/base/span.hpp"
 #include "coupler/docs/drawing.hpp"
 #include "coupler/docs/point_description.hpp"
+#include "coupler/docs/tool_description.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::docs {
@@ -44,6 +45,7 @@ struct Document {
   std::string fingerprint;  ///< sixteen hexadecimal digits
   std::vector<FactGroup> facts;
   std::vector<PointDescription> points;  ///< as Map::points
+  std::vector<ToolDescription> tools;    ///< as Map::tools
   std::vector<Command> mbpoll;
   std::vector<Command> ros;
   std::vector<Drawing> drawings;
@@ -60,8 +62,8 @@ std::vector<FactGroup> facts_of(const Map& map);
 /// not have that type.
 std::vector<Command> mbpoll_commands(const Map& map);
 
-/// The driver makes the topics; the tools of ROS 2 and of ROS 1 show the first readable point and write the
-/// first writable one.
+/// The driver makes the topics; the tools of ROS 2 and of ROS 1 show the first readable point, write the
+/// first one that may be written, and close the first tool.
 std::vector<Command> ros_commands(const Map& map, const std::string& file);
 
 /// The place of the point in the map's file, "device.yaml#L12"; empty if it is unknown.

@@ -188,6 +188,22 @@ std::string drawings(const Document& document) {
   return out + "</div>\n</section>\n";
 }
 
+std::string tools(const Document& document) {
+  if (document.tools.empty()) return {};
+  std::string out = "<section id=\"tools\">\n<h2>Tools</h2>\n<div class=\"groups\">\n";
+  for (const ToolDescription& tool : document.tools) {
+    out += fmt::format("<div><h3>{}</h3>\n<dl>\n", html(tool.name));
+    for (const ToolColumn& column : tool_columns) {
+      const std::string& text = tool.*column.text;
+      if (column.text == &ToolDescription::name || text.empty()) continue;
+      out += fmt::format("<dt>{}{}</dt><dd>{}</dd>\n", static_cast<char>(column.title[0] - 'a' + 'A'),
+                         column.title.substr(1), html(text));
+    }
+    out += "</dl></div>\n";
+  }
+  return out + "</div>\n</section>\n";
+}
+
 std::string facts(const Document& document) {
   std::string out = "<section id=\"device\">\n<h2>The device</h2>\n<div class=\"groups\">\n";
   for (const FactGroup& group : document.facts) {
@@ -212,8 +228,14 @@ std::string use(const Document& document) {
          commands("From ROS", document.ros) +
          fmt::format(
              "<p>The topic of a point is <code>/{0}/&lt;point&gt;</code>, that of writes "
-             "<code>/{0}/&lt;point&gt;/write</code>; the messages are in the table.</p>\n</section>\n",
-             html(document.name));
+             "<code>/{0}/&lt;point&gt;/write</code>; the messages are in the table.{1}</p>\n</section>\n",
+             html(document.name),
+             document.tools.empty()
+                 ? ""
+                 : fmt::format(" A tool has the services <code>/{0}/&lt;tool&gt;/close</code> and "
+                               "<code>/{0}/&lt;tool&gt;/open</code>, and the topic "
+                               "<code>/{0}/&lt;tool&gt;/state</code>.",
+                               html(document.name)));
 }
 
 }  // namespace
@@ -223,10 +245,11 @@ std::string html_page(const Document& document) {
          fmt::format(
              "<body>\n<a class=\"skip\" href=\"#points\">Skip to the "
              "points</a>\n<header>\n<h1>{}</h1>\n<p>{}</p>\n"
-             "<nav><a href=\"#list\">Points</a> <a href=\"#spaces\">Address spaces</a> {}"
+             "<nav><a href=\"#list\">Points</a> <a href=\"#spaces\">Address spaces</a> {}{}"
              "<a href=\"#device\">The device</a> <a href=\"#use\">How to read "
              "it</a></nav>\n</header>\n<main>\n",
              html(document.name), made_from(document),
+             document.tools.empty() ? "" : "<a href=\"#tools\">Tools</a> ",
              document.drawings.empty() ? "" : "<a href=\"#order\">Bytes and bits</a> ") +
          "<section id=\"list\">\n<h2>Points</h2>\n" + search(document) + html_rows(document) +
          "<p class=\"note\">Address counts from 0, as requests carry it. Modicon counts from 1 behind the "
@@ -236,8 +259,8 @@ std::string html_page(const Document& document) {
          "<section id=\"spaces\">\n<h2>Address spaces</h2>\n<div class=\"picture\" tabindex=\"0\" "
          "role=\"region\" "
          "aria-label=\"Picture of the address spaces\">\n" +
-         document.picture + "</div>\n</section>\n" + drawings(document) + facts(document) + use(document) +
-         "</main>\n<script>\n" + std::string(page_script()) + "</script>\n</body>\n</html>\n";
+         document.picture + "</div>\n</section>\n" + tools(document) + drawings(document) + facts(document) +
+         use(document) + "</main>\n<script>\n" + std::string(page_script()) + "</script>\n</body>\n</html>\n";
 }
 
 }  // namespace coupler::docs

@@ -95,6 +95,20 @@ void put_table(const Document& document, Table table, std::string& out) {
   }
 }
 
+void put_tools(const std::vector<ToolDescription>& tools, std::string& out) {
+  if (tools.empty()) return;
+  const std::vector<ToolColumn> used = used_columns(tools);
+  out += fmt::format("\n## Tools ({})\n\n", tools.size());
+  for (const ToolColumn& column : used) out += fmt::format("| {} ", column.title);
+  out += "|\n";
+  for (std::size_t i = 0; i < used.size(); ++i) out += "|---";
+  out += "|\n";
+  for (const ToolDescription& tool : tools) {
+    for (const ToolColumn& column : used) out += fmt::format("| {} ", markdown(tool.*column.text));
+    out += "|\n";
+  }
+}
+
 void put_commands(std::string_view title, const std::vector<Command>& commands, std::string& out) {
   if (commands.empty()) return;
   out += fmt::format("\n{}\n\n```sh\n", title);
@@ -120,6 +134,7 @@ std::string markdown_page(const Document& document) {
       "table's "
       "digit.\n";
   for (const Table table : tables) put_table(document, table, out);
+  put_tools(document.tools, out);
   out += "\n## The device\n\n| | |\n|---|---|\n";
   for (const FactGroup& group : document.facts)
     for (const Fact& fact : group.facts)
@@ -134,6 +149,11 @@ std::string markdown_page(const Document& document) {
   put_commands("From ROS:", document.ros, out);
   out += fmt::format("\nThe topic of a point is `/{0}/<point>`, that of writes `/{0}/<point>/write`.\n",
                      document.name);
+  if (!document.tools.empty())
+    out += fmt::format(
+        "A tool has the services `/{0}/<tool>/close` and `/{0}/<tool>/open`, and the topic "
+        "`/{0}/<tool>/state`.\n",
+        document.name);
   return out;
 }
 

@@ -33,6 +33,7 @@ using ::coupler::Framing;
 using ::coupler::HostOptions;
 using ::coupler::Map;
 using ::coupler::NamedValue;
+using ::coupler::OnEmpty;
 using ::coupler::OnReconnect;
 using ::coupler::OnShutdown;
 using ::coupler::Point;
@@ -45,6 +46,7 @@ using ::coupler::Serial;
 using ::coupler::SimWire;
 using ::coupler::Table;
 using ::coupler::TableRange;
+using ::coupler::Tool;
 using ::coupler::Watchdog;
 using ::coupler::WatchdogSequences;
 using ::coupler::codec::Encoding;
@@ -58,7 +60,7 @@ using namespace ::std::chrono_literals;
 template <::std::uint16_t... Words>
 constexpr ::std::uint16_t registers[] = {{Words...}};
 
-{values}{points}{sim}{allow}{roles}{unreadable}{read_whole}{sequences}// The file itself, byte by byte: the node serves it.
+{values}{points}{sim}{tools}{allow}{roles}{unreadable}{read_whole}{sequences}// The file itself, byte by byte: the node serves it.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Woverlength-strings"
 constexpr char text[] =
@@ -83,7 +85,7 @@ constexpr Map map{{
     {poll}, {changes}, {verify},
     {security},  // roles, those of clients without TLS and without a role, files, port
     {read_whole_name},
-    {wait_for},
+    {wait_for}, {tools_name},
 }};
 
 }}  // namespace coupler::maps::{name}
@@ -161,6 +163,10 @@ std::string row(const Point& point, std::size_t index) {
 }
 
 std::string row(const SimWire& wire) { return fmt::format("    {},\n", aggregate(wire)); }
+
+std::string row(const Tool& tool) {
+  return fmt::format("    {{{}, {}}},\n", literal(tool.name), values_of(tool));
+}
 
 std::string row(const TableRange& area) {
   return fmt::format("    {{{}, Range::of({}, {})}},\n", enumerator(area.table), area.range.start(),
@@ -277,6 +283,8 @@ std::string table_source(const Map& map, const Provenance& provenance) {
                 "address, bounds, names of values, invalid values, faults, pulse, host.",
                 map.points)),
       arg("values", values(map)), arg("sim", array("SimWire sim", keys_of<SimWire>(), map.sim)),
+      arg("tools", array("Tool tools", "name, " + keys_of<Tool>(), map.tools)),
+      arg("tools_name", map.tools.empty() ? "{}" : "tools"),
       arg("allow", array("::std::string_view allow", "Who may connect.", map.service.allow)),
       arg("unreadable", array("TableRange unreadable", "What is never read.", map.unreadable)),
       arg("unreadable_name", map.unreadable.empty() ? "{}" : "unreadable"),

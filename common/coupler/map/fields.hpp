@@ -192,6 +192,17 @@ constexpr auto fields_of(const SimWire*) {
                          field("invert", &SimWire::invert), field("square", &SimWire::square));
 }
 
+/// And `name`.
+constexpr auto fields_of(const Tool*) {
+  constexpr std::string_view change = "tool-changed";
+  return std::make_tuple(field("close", &Tool::close, change), field("open", &Tool::open, change),
+                         field("closed", &Tool::closed, change), field("opened", &Tool::opened, change),
+                         field("holds", &Tool::holds, change), field("travel", &Tool::travel, change),
+                         field("timeout", &Tool::timeout, change), field("settle", &Tool::settle, change),
+                         field("hold", &Tool::hold, change), field("empty", &Tool::empty, change),
+                         field("direct", &Tool::direct, change));
+}
+
 template <class T, class = void>
 constexpr bool has_fields = false;
 template <class T>

@@ -17,7 +17,7 @@ namespace coupler {
 
 /// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
 /// not compile.
-constexpr int model_version = 16;
+constexpr int model_version = 17;
 
 /// The place of the coupler. ROS parameters and arguments override it.
 struct Connection {
@@ -118,6 +118,32 @@ constexpr Enumeration<Verify, 3> enumeration(Verify) {
   return {"Verify", {{Verify::require, "require"}, {Verify::warn, "warn"}, {Verify::off, "off"}}};
 }
 
+/// What a tool does that is closed where `holds` says that nothing is held.
+enum class OnEmpty : std::uint8_t {
+  abort,  ///< its goal fails
+  ok      ///< its goal succeeds
+};
+constexpr Enumeration<OnEmpty, 2> enumeration(OnEmpty) {
+  return {"OnEmpty", {{OnEmpty::abort, "abort"}, {OnEmpty::ok, "ok"}}};
+}
+
+/// Something with two ends: a gripper, a clamp, a cylinder, a vacuum cup. Its points are bits of the map; one
+/// that it does not have is empty.
+struct Tool {
+  std::string_view name;
+  std::string_view close;               ///< the output that is on to close it; empty: `open` off closes it
+  std::string_view open;                ///< the output that is on to open it; empty: `close` off opens it
+  std::string_view closed;              ///< the input that is on at the closed end
+  std::string_view opened;              ///< the input that is on at the open end
+  std::string_view holds;               ///< the input that is on while it holds a part
+  std::chrono::milliseconds travel{0};  ///< to an end that has no input; 0: both ends have one
+  std::chrono::milliseconds timeout{2000};  ///< after that it is stuck; at least `travel`
+  std::chrono::milliseconds settle{0};      ///< an input counts when it has been on for so long
+  bool hold = true;  ///< its output stays on at the end; otherwise it is switched off there
+  OnEmpty empty = OnEmpty::abort;
+  bool direct = false;  ///< its outputs may be written by themselves, too
+};
+
 /// One wire of the simulated chip: `from` an output `to` an input, or a square wave `to` an input.
 struct SimWire {
   std::string_view from;  ///< a coil; empty: a square wave
@@ -150,12 +176,20 @@ struct Map {
   Security security{};
   Span<const TableRange> read_whole{};  ///< by place, none overlaps another: read whole for any point in it
   bool wait_for = false;                ///< the driver serves an action that waits for values
+  Span<const Tool> tools{};             ///< in the order of the file
 };
 
 /// The point of that name, or nullptr.
 constexpr const Point* find(const Map& map, std::string_view name) {
   for (const Point& point : map.points)
     if (point.name == name) return &point;
+  return nullptr;
+}
+
+/// The tool that has the point of that name as an output, or nullptr.
+constexpr const Tool* tool_with_output(const Map& map, std::string_view point) {
+  for (const Tool& tool : map.tools)
+    if (tool.close == point || tool.open == point) return &tool;
   return nullptr;
 }
 

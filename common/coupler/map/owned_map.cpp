@@ -49,6 +49,11 @@ Span<const std::uint8_t> OwnedMap::keep(const std::vector<std::uint8_t>& rights)
   return rights_.emplace_back(rights.begin(), rights.end());
 }
 
+Span<const Tool> OwnedMap::keep(const std::vector<Tool>& tools) {
+  tools_.assign(tools.begin(), tools.end());
+  return tools_;
+}
+
 void OwnedMap::finish(Map head, const std::vector<Point>& points, const std::vector<SimWire>& sim) {
   points_.assign(points.begin(), points.end());
   sim_.assign(sim.begin(), sim.end());

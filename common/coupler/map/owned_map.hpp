@@ -39,6 +39,7 @@ class OwnedMap {
   Span<const Role> keep(const std::vector<Role>& roles);
   /// Keeps a copy of a role's rights.
   Span<const std::uint8_t> keep(const std::vector<std::uint8_t>& rights);
+  Span<const Tool> keep(const std::vector<Tool>& tools);
 
   /// Ends the building: sorts the points and fills in fingerprint and checksum. `head` brings all fields but
   /// those and `points` and `sim`; its views, and those of points and wires, must point into what was kept
@@ -55,6 +56,7 @@ class OwnedMap {
   std::pmr::deque<std::pmr::vector<WatchdogSequences::Write>> sequences_;
   std::pmr::vector<Role> roles_;
   std::pmr::deque<std::pmr::vector<std::uint8_t>> rights_;
+  std::pmr::vector<Tool> tools_;
   std::pmr::vector<Point> points_;
   std::pmr::vector<SimWire> sim_;
   Map map_;

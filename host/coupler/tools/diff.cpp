@@ -53,8 +53,8 @@ std::string from_to(const Change& change) {
 }
 
 std::string what(const Change& change) {
-  if (change.rule == "point-removed") return change.older;
-  return change.rule == "point-added" ? change.newer : from_to(change);
+  if (change.rule == "point-removed" || change.rule == "tool-removed") return change.older;
+  return change.rule == "point-added" || change.rule == "tool-added" ? change.newer : from_to(change);
 }
 
 std::string_view or_map(const Change& change) {

@@ -36,6 +36,7 @@ FieldMap::FieldMap(const Map& node)
   std::sort(points_.begin(), points_.end(), canonical_less);
   map_.points = {points_.data(), points_.size()};
   map_.sim = {};
+  map_.tools = {};
   map_.connection.unit = field_unit;
   map_.limits.mask_write = false;
   map_.changes = false;

@@ -80,9 +80,13 @@ void add_fields(const Struct& older, const Struct& newer, std::string_view point
   const std::size_t first = changes.size();
   for_each_field(older, newer, [&](const auto& field, const auto& before, const auto& now) {
     if (before == now) return;
-    const std::string name = names(field.change, field.key) ? std::string() : fmt::format("{} ", field.key);
-    std::string from = name + text_of(field, before);
-    std::string to = name + text_of(field, now);
+    const bool is_named = names(field.change, field.key);
+    const auto told = [&](const auto& value) {
+      const std::string text = text_of(field, value);
+      return is_named ? text : fmt::format("{} {}", field.key, text.empty() ? "none" : text);
+    };
+    std::string from = told(before);
+    std::string to = told(now);
     if (changes.size() > first && changes.back().rule == field.change) {
       changes.back().older += ", " + from;
       changes.back().newer += ", " + to;
@@ -100,6 +104,24 @@ void add_all_fields(const Map& older, const Map& newer, std::vector<Change>& cha
   add_fields(older, newer, {}, changes);
   add_fields(older.service, newer.service, {}, changes);
   add_fields(older.service.watchdog, newer.service.watchdog, {}, changes);
+}
+
+/// Adds the changes of the tools, which are matched by name.
+void add_tools(const Map& older, const Map& newer, std::vector<Change>& changes) {
+  const auto find = [](Span<const Tool> tools, std::string_view name) {
+    return std::find_if(tools.begin(), tools.end(), [&](const Tool& tool) { return tool.name == name; });
+  };
+  constexpr Severity severity = Severity::compatible;
+  for (const Tool& tool : older.tools) {
+    const auto* const found = find(newer.tools, tool.name);
+    if (found == newer.tools.end())
+      changes.push_back({"tool-removed", severity, std::string(tool.name), tool_text(tool), {}});
+    else
+      add_fields(tool, *found, tool.name, changes);
+  }
+  for (const Tool& tool : newer.tools)
+    if (find(older.tools, tool.name) == older.tools.end())
+      changes.push_back({"tool-added", severity, std::string(tool.name), {}, tool_text(tool)});
 }
 
 template <class Described>
@@ -168,6 +190,7 @@ std::vector<Change> compare(const Map& older, const Map& newer) {
   std::vector<Change> changes;
   add_details(older, newer, {}, changes);
   add_all_fields(older, newer, changes);
+  add_tools(older, newer, changes);
   const std::vector<Difference> contract = diff(older, newer);
   const auto differences = indexed<std::string_view>(
       Span<const Difference>(contract), [](const Difference& d) -> std::string_view { return d.point; });

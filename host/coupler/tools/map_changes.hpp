@@ -34,14 +34,15 @@ constexpr std::string_view to_string(Severity severity) {
 struct Change {
   std::string rule;  ///< "address-moved": stable, for scripts
   Severity severity;
-  std::string point;  ///< empty: of the map as a whole
+  std::string point;  ///< or the tool, if the rule is of tools; empty: of the map as a whole
   std::string older;  ///< as text; empty: there was none
   std::string newer;
 };
 
-/// Returns every difference: of the map as a whole, then of the points in the order of the old map, then the
-/// added points. Points are matched by name. If one is gone and a new one of its type is in its place, the
-/// point is renamed. One of the changes is breaking exactly if !is_subset(older, newer).
+/// Returns every difference: of the map as a whole and of its tools, then of the points in the order of the
+/// old map, then the added points. Points and tools are matched by name. If one is gone and a new one of its
+/// type is in its place, the point is renamed. One of the changes is breaking exactly if !is_subset(older,
+/// newer).
 std::vector<Change> compare(const Map& older, const Map& newer);
 
 /// Returns the worst severity of the changes, or nullopt if there are none.

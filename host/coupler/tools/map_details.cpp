@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "coupler/docs/words.hpp"
+#include "coupler/map/fields.hpp"
 #include "coupler/map/rights_text.hpp"
 
 namespace coupler::tools {
@@ -126,6 +127,14 @@ std::vector<Detail> details_of(const Point& point) {
       {"invalid-changed", meaning, docs::words(point.invalid)},
       {"deadman-changed", compatible, deadman_text(point.host)},
   };
+}
+
+std::string tool_text(const Tool& tool) {
+  std::string text;
+  for_each_field(tool, Tool{}, [&](const auto& field, const auto& value, const auto& usual) {
+    if (value != usual) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", field.key, written(value));
+  });
+  return text;
 }
 
 std::vector<Detail> details_of(const Map& map) {

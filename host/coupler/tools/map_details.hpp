@@ -21,7 +21,10 @@ struct Detail {
 /// The same rules in the same order for every point.
 std::vector<Detail> details_of(const Point& point);
 
-/// The same rules in the same order for every map; of the map itself, not of its points.
+/// What a tool says, but its name.
+std::string tool_text(const Tool& tool);
+
+/// The same rules in the same order for every map; of the map itself, not of its points and tools.
 std::vector<Detail> details_of(const Map& map);
 
 }  // namespace coupler::tools

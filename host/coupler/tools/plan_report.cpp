@@ -2,13 +2,18 @@
 #include "coupler/tools/plan_report.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <map>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "coupler/docs/tool_description.hpp"
 #include "coupler/json/json_text.hpp"
+#include "coupler/map/fields.hpp"
 #include "coupler/plan/cost.hpp"
 #include "coupler/plan/explain.hpp"
 #include "coupler/plan/read_span.hpp"
@@ -80,6 +85,24 @@ std::string not_read_text(const Map& map) {
   return text.empty() ? text : "\n" + text;
 }
 
+/// A table; empty if the map has no tool.
+std::string tools_text(const Map& map) {
+  if (map.tools.empty()) return {};
+  std::vector<docs::ToolDescription> tools;
+  for (const Tool& tool : map.tools) tools.push_back(docs::describe(tool));
+  std::vector<std::string> lines(1 + tools.size());
+  for (const docs::ToolColumn& column : docs::used_columns(tools)) {
+    std::size_t width = column.title.size();
+    for (const docs::ToolDescription& tool : tools) width = std::max(width, (tool.*column.text).size());
+    lines[0] += fmt::format("  {:<{}}", column.title, width);
+    for (std::size_t i = 0; i < tools.size(); ++i)
+      lines[1 + i] += fmt::format("  {:<{}}", tools[i].*column.text, width);
+  }
+  std::string text = "\nTools:\n";
+  for (const std::string& line : lines) text += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
+  return text;
+}
+
 /// The keys that differ from the map's.
 std::string keys_text(const Polling& polling, const Polling& map) {
   std::vector<std::string> keys;
@@ -111,6 +134,23 @@ std::string strategies_text(const Map& map, const plan::NetworkTiming& timing) {
   if (pays)
     text += "  The last is for a device that answers unmapped addresses. coupler-node refuses them.\n";
   return text;
+}
+
+ordered_json tool_json(const Tool& tool) {
+  ordered_json json{{"name", tool.name}};
+  for_each_field(tool, [&](const auto& field, const auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    const std::string key(field.key);
+    if constexpr (std::is_same_v<Value, std::chrono::milliseconds>)
+      json[key + "_ms"] = value.count();
+    else if constexpr (std::is_same_v<Value, std::string_view>)
+      json[key] = value.empty() ? ordered_json() : ordered_json(value);
+    else if constexpr (std::is_enum_v<Value>)
+      json[key] = to_string(value);
+    else
+      json[key] = value;
+  });
+  return json;
 }
 
 ordered_json cost_json(const plan::Cost& cost) {
@@ -182,7 +222,7 @@ std::string plan_text(const std::string& file, const Map& map, const plan::Netwo
                   counted(requests, "request"), milliseconds_text(timing.round_trip),
                   timing.pause.count() > 0 ? " and a pause of " + milliseconds_text(timing.pause) : "");
   for (const plan::GroupPlan& group : groups) text += "\n" + group_text(group, map, timing);
-  return text + not_read_text(map) + strategies_text(map, timing);
+  return text + not_read_text(map) + tools_text(map) + strategies_text(map, timing);
 }
 
 std::string plan_json(const std::string& file, const Map& map, const plan::NetworkTiming& timing) {
@@ -196,11 +236,13 @@ std::string plan_json(const std::string& file, const Map& map, const plan::Netwo
                     {"fits", load <= 1},
                     {"groups", ordered_json::array()},
                     {"not_read", ordered_json::array()},
+                    {"tools", ordered_json::array()},
                     {"strategies", ordered_json::array()}};
   for (const plan::GroupPlan& group : groups) json["groups"].push_back(group_json(group, map, timing));
   for (const Point& point : map.points)
     if (const auto reason = plan::why_not_read(map, point))
       json["not_read"].push_back({{"point", point.name}, {"reason", plan::to_string(*reason)}});
+  for (const Tool& tool : map.tools) json["tools"].push_back(tool_json(tool));
   for (const plan::Strategy& strategy : plan::compare_strategies(map, timing))
     json["strategies"].push_back(strategy_json(strategy));
   return json_text(json);

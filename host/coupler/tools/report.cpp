@@ -67,9 +67,10 @@ ordered_json to_json(const Diagnostic& diagnostic) {
 }  // namespace
 
 std::string summary(const std::string& file, const Map& map) {
-  return fmt::format("{}: ok: {}, {}{}, fingerprint {}", printable(file), map.name,
+  const auto tools = static_cast<std::ptrdiff_t>(map.tools.size());
+  return fmt::format("{}: ok: {}, {}{}{}, fingerprint {}", printable(file), map.name,
                      counted(static_cast<std::ptrdiff_t>(map.points.size()), "point"), by_table(map),
-                     fingerprint_text(map.fingerprint));
+                     tools == 0 ? "" : ", " + counted(tools, "tool"), fingerprint_text(map.fingerprint));
 }
 
 namespace {

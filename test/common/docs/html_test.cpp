@@ -63,6 +63,24 @@ TEST(Html, Columns_that_no_point_fills_are_left_out) {
   EXPECT_THAT(html_page(of(builder)), HasSubstr(">Units</th>"));
 }
 
+TEST(Html, Tools_have_a_section_if_there_are_any) {
+  auto builder = fakes::MapBuilder().coil("suction", 0).input("vacuum", 0);
+  EXPECT_THAT(html_page(of(builder)), Not(HasSubstr("#tools")));
+  Tool cup;
+  cup.name = "cup";
+  cup.close = "suction";
+  cup.closed = "vacuum";
+  cup.travel = std::chrono::milliseconds(300);
+  builder.head().tools = {&cup, 1};
+  const std::string page = html_page(of(builder));
+  EXPECT_THAT(page, HasSubstr("<a href=\"#tools\">Tools</a>"));
+  EXPECT_THAT(page, HasSubstr("<h3>cup</h3>\n<dl>\n<dt>Closes by</dt><dd>suction on</dd>\n"
+                              "<dt>Opens by</dt><dd>suction off</dd>\n<dt>Closed</dt><dd>vacuum on</dd>\n"
+                              "<dt>Open</dt><dd>after 300 ms</dd>\n<dt>Stuck</dt><dd>after 2 s</dd>\n</dl>"));
+  EXPECT_THAT(page, HasSubstr("rosservice call /device/cup/close"));
+  EXPECT_THAT(page, Not(HasSubstr("suction/write"))) << "only the tool writes it";
+}
+
 TEST(Html, A_map_without_points_has_a_page) {
   EXPECT_THAT(html_page(of(fakes::MapBuilder())), HasSubstr("<table id=\"points\">"));
 }

@@ -72,5 +72,26 @@ TEST(Markdown, Each_address_space_has_a_table_of_its_points) {
           "read, write | `std_msgs/Float32` |\n"));
 }
 
+TEST(Markdown, Tools_have_a_table_if_there_are_any) {
+  auto builder = fakes::MapBuilder("cell").coil("grip", 0).coil("release", 1).input("part", 0);
+  EXPECT_THAT(markdown_page(make_document(builder.build()->map(), {}, {"cell.yaml", "", "1.2.3"})),
+              Not(HasSubstr("Tools")));
+  Tool gripper;
+  gripper.name = "gripper";
+  gripper.close = "grip";
+  gripper.open = "release";
+  gripper.holds = "part";
+  gripper.travel = std::chrono::milliseconds(300);
+  gripper.settle = std::chrono::milliseconds(20);
+  builder.head().tools = {&gripper, 1};
+  EXPECT_THAT(
+      markdown_page(make_document(builder.build()->map(), {}, {"cell.yaml", "", "1.2.3"})),
+      HasSubstr("\n## Tools (1)\n\n"
+                "| tool | closes by | opens by | closed | open | holds a part | without a part | stuck |\n"
+                "|---|---|---|---|---|---|---|---|\n"
+                "| gripper | grip on | release on | after 300 ms | after 300 ms | part on for 20 ms | "
+                "fails | after 2 s |\n"));
+}
+
 }  // namespace
 }  // namespace coupler::docs

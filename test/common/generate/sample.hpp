@@ -63,6 +63,12 @@ inline std::shared_ptr<const OwnedMap> sample() {
   head.text = "name: cell\nrest: \"ü?\?/\\\"";
   const auto allow = owned->keep(std::vector<std::string_view>{"10.0.0.7", "fd00::/8"});
   head.service = {"::1", allow, {500ms, Watchdog::FedBy::write, Watchdog::Recovery::manual}, true};
+  Tool clamp;
+  clamp.name = "clamp";
+  clamp.close = "lamp";
+  clamp.closed = "button";
+  clamp.travel = 300ms;
+  head.tools = owned->keep(std::vector<Tool>{clamp});
   owned->finish(head, {lamp, button, level, label, flag, parts},
                 {{"lamp", "button", true, 0us}, {"", "button", false, 1000000us}});
   return owned;

@@ -57,6 +57,13 @@ TEST(Table, Wires_of_the_simulated_chip_are_rows) {
       HasSubstr("    {\"lamp\", \"button\", true, 0us},\n    {\"\", \"button\", false, 1000000us},\n"));
 }
 
+TEST(Table, Tools_are_rows) {
+  EXPECT_THAT(source(),
+              AllOf(HasSubstr("    {\"clamp\", \"lamp\", \"\", \"button\", \"\", \"\", 300ms, 2000ms, "
+                              "0ms, true, OnEmpty::abort, false},\n"),
+                    HasSubstr("    false, tools,\n};")));
+}
+
 TEST(Table, Connection_polling_and_limits_are_in_it) {
   EXPECT_THAT(source(), AllOf(HasSubstr(R"({"cell.local", 1502, 7, 250ms, Framing::tcp, {}, {}})"),
                               HasSubstr("{2.5, true, 65, false, 13}"),
@@ -102,8 +109,8 @@ TEST(Table, A_map_without_points_has_no_empty_arrays) {
   OwnedMap empty;
   empty.finish({}, {}, {});
   EXPECT_THAT(table_source(empty.map(), testing::provenance),
-              AllOf(Not(HasSubstr("points[]")), Not(HasSubstr("sim[]")), Not(HasSubstr("allow[]")),
-                    HasSubstr("    {},\n    {},\n    fingerprint,\n")));
+              AllOf(Not(HasSubstr("points[]")), Not(HasSubstr("sim[]")), Not(HasSubstr("tools[]")),
+                    Not(HasSubstr("allow[]")), HasSubstr("    {},\n    {},\n    fingerprint,\n")));
 }
 
 TEST(Table, The_header_carries_fingerprint_and_model_version) {

@@ -170,6 +170,10 @@ class Check(Cli):
         self.assertRegex(done.stdout, r"^cell\.yaml: ok: cell, 4 points "
                                       r"\(1 coil, 2 discrete inputs, 1 input register\), fingerprint [0-9a-f]{16}\n$")
 
+    def test_tools_are_counted(self):
+        text = GOOD.replace("mapping:", "tools: {press: {close: lamp, travel: 1s}}\nmapping:")
+        self.assertIn(" 1 input register), 1 tool, fingerprint ", self.coupler("check", self.file("cell.yaml", text)).stdout)
+
     def test_a_bad_map_is_told_with_its_place(self):
         done = self.coupler("check", self.file("cell.yaml", BAD))
         self.assertEqual((done.returncode, done.stdout), (1, ""))

@@ -28,17 +28,22 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
   return text.replace(at, from.size(), to);
 }
 
-/// "breaking type-changed speed: INT -> UINT" for each change of cell.
-std::vector<std::string> changes_by(std::string_view from, std::string_view to) {
-  const MapPtr older = load_map(cell, "old.yaml").map;
-  const LoadResult newer = load_map(replaced(cell, from, to), "new.yaml");
-  EXPECT_TRUE(newer.map) << to;
+/// "breaking type-changed speed: INT -> UINT" for each change.
+std::vector<std::string> changes_between(const std::string& old_text, const std::string& new_text) {
+  const MapPtr older = load_map(old_text, "old.yaml").map;
+  const LoadResult newer = load_map(new_text, "new.yaml");
+  EXPECT_TRUE(newer.map) << new_text;
   if (!older || !newer.map) return {"does not load"};
   std::vector<std::string> lines;
   for (const Change& change : compare(older->map(), newer.map->map()))
     lines.push_back(std::string(to_string(change.severity)) + " " + change.rule + " " + change.point + ": " +
                     change.older + " -> " + change.newer);
   return lines;
+}
+
+/// The changes of cell.
+std::vector<std::string> changes_by(std::string_view from, std::string_view to) {
+  return changes_between(cell, replaced(cell, from, to));
 }
 
 TEST(Changes, A_comment_is_none) { EXPECT_THAT(changes_by("rate: 10", "rate: 10  # Hz"), IsEmpty()); }
@@ -117,6 +122,21 @@ TEST(Changes, What_makes_a_value_mean_something_else_is_of_meaning) {
               ElementsAre("meaning pulse-changed lamp:  -> 1000ms"));
   EXPECT_THAT(changes_by("units: rpm", "units: rpm, values: {5: five}"),
               ElementsAre("meaning values-changed speed:  -> 5: five"));
+}
+
+TEST(Changes, Tools_are_told_by_their_names) {
+  const std::string lift =
+      replaced(cell, "rate: 10", "rate: 10\ntools: {lift: {close: lamp, travel: 300ms}}");
+  EXPECT_THAT(changes_between(cell, lift),
+              ElementsAre("compatible tool-added lift:  -> close lamp, travel 300ms"));
+  EXPECT_THAT(changes_between(lift, cell),
+              ElementsAre("compatible tool-removed lift: close lamp, travel 300ms -> "));
+  EXPECT_THAT(changes_between(lift, replaced(lift, "lift:", "hoist:")),
+              ElementsAre("compatible tool-removed lift: close lamp, travel 300ms -> ",
+                          "compatible tool-added hoist:  -> close lamp, travel 300ms"));
+  EXPECT_THAT(changes_between(lift, replaced(lift, "close: lamp, travel: 300ms", "open: lamp, travel: 1s")),
+              ElementsAre("compatible tool-changed lift: close lamp, open none, travel 300ms -> "
+                          "close none, open lamp, travel 1000ms"));
 }
 
 TEST(Changes, How_the_host_writes_a_point_is_compatible) {

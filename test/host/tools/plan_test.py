@@ -73,6 +73,17 @@ class Plan(Cli):
         self.assertEqual(self.json(text=text)["not_read"], [{"point": "speed", "reason": "write_only"}])
         self.assertIn("Not read, write-only: speed\n", self.plan(text=text).stdout)
 
+    def test_shows_the_tools(self):
+        text = SPREAD.replace("mapping:", "tools: {lift: {close: lamp, open: horn, travel: 300ms, hold: false}}\nmapping:")
+        self.assertIn("\nTools:\n"
+                      "  tool  closes by  opens by  closed        open          stuck      outputs\n"
+                      "  lift  lamp on    horn on   after 300 ms  after 300 ms  after 2 s  off at the end\n", self.plan(text=text).stdout)
+        self.assertEqual(self.json(text=text)["tools"], [{
+            "name": "lift", "close": "lamp", "open": "horn", "closed": None, "opened": None, "holds": None, "travel_ms": 300,
+            "timeout_ms": 2000, "settle_ms": 0, "hold": False, "empty": "abort", "direct": False}])
+        self.assertNotIn("Tools", self.plan().stdout)
+        self.assertEqual(self.json()["tools"], [])
+
     def test_does_not_cross_what_is_unreadable(self):
         text = SPREAD.replace("mapping:", "registers_read_continuous: true\n"
                               "unreadable: [{table: holding_registers, from: 4, to: 5}]\nmapping:")

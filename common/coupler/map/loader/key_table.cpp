@@ -267,6 +267,9 @@ constexpr Key keys[] = {
     project("wait_for", S::map, K::boolean, "true",
             "whether the driver serves an action that waits for values")
         .otherwise("false"),
+    project("tools", S::map, K::named, "{clamp: {close: valve, travel: 300ms}}",
+            "what the driver opens and closes: grippers, clamps, cylinders, vacuum cups")
+        .holds(S::tool),
     project("unreadable", S::map, K::section, "[{table: coils, from: 8, to: 15}]",
             "addresses that the device refuses")
         .lists(S::area),
@@ -277,6 +280,26 @@ constexpr Key keys[] = {
     project("table", S::area, K::choice, "coils", "the area's table").needed().one_of<Table>(),
     project("from", S::area, K::address, "8", "its first address").needed(),
     project("to", S::area, K::address, "15", "its last address").needed(),
+    // `tools:`
+    project("close", S::tool, K::text, "valve_close", "the output that is on to close it"),
+    project("open", S::tool, K::text, "valve_open", "the output that is on to open it"),
+    project("closed", S::tool, K::text, "sensor_closed", "the bit that is on where it is closed"),
+    project("opened", S::tool, K::text, "sensor_opened", "the bit that is on where it is open"),
+    project("holds", S::tool, K::text, "part_present", "the bit that is on while it holds a part"),
+    project("travel", S::tool, K::duration, "300ms", "how long it takes to an end that has no sensor")
+        .within(0.001, most_seconds),
+    project("timeout", S::tool, K::duration, "800ms", "after that it is stuck")
+        .otherwise("2s")
+        .within(0.001, most_seconds),
+    project("settle", S::tool, K::duration, "30ms", "a sensor counts when it has been on for so long")
+        .otherwise("0ms")
+        .within(0, 60),
+    project("hold", S::tool, K::boolean, "false", "whether the output stays on at the end").otherwise("true"),
+    project("empty", S::tool, K::choice, "ok", "what it means to be closed without a part")
+        .otherwise("abort")
+        .one_of<OnEmpty>(),
+    project("direct", S::tool, K::boolean, "true", "whether its outputs may be written by themselves, too")
+        .otherwise("false"),
     // `scale:`, `iio:`, `pwm:`, `deadman:`
     project("gain", S::scale, K::number, "0.1", "raw is multiplied by it").otherwise("1"),
     project("offset", S::scale, K::number, "-40", "and this is added").otherwise("0"),
@@ -337,7 +360,7 @@ constexpr Key keys[] = {
         .one_of<Watchdog::Recovery>(),
     project("heartbeat", S::watchdog, K::address, "100", "the register that a PLC's program watches"),
     // `security:`
-    project("roles", S::security, K::roles, "{viewer: {read: all}}", "what clients of each role may do")
+    project("roles", S::security, K::named, "{viewer: {read: all}}", "what clients of each role may do")
         .holds(S::role)
         .needed(),
     project("plain", S::security, K::text, "viewer", "the role of clients without TLS").otherwise("none"),

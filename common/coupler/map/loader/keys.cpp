@@ -29,6 +29,7 @@ std::string_view describe(Section section) {
     case Section::security: return "'security'";
     case Section::role: return "a role";
     case Section::tls: return "'tls'";
+    case Section::tool: return "a tool";
     case Section::none: break;
   }
   return "nothing";

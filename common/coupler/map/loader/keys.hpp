@@ -38,7 +38,8 @@ enum class Section : std::uint32_t {
   security = 1U << 19U,
   role = 1U << 20U,  ///< one of `roles:`
   tls = 1U << 21U,
-  last = tls
+  tool = 1U << 22U,  ///< one of `tools:`
+  last = tool
 };
 constexpr Section operator|(Section a, Section b) {
   return static_cast<Section>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
@@ -74,7 +75,7 @@ enum class ValueKind : std::uint8_t {
   raw_values,  ///< bits of the point's type: numbers, and lists of two numbers that are a range
   names,       ///< integer -> identifier
   points,      ///< name -> point: a map as Key::inside says; for bits just an address is good
-  roles,       ///< name -> role: a map as Key::inside says
+  named,       ///< name -> a map as Key::inside says
   patterns,    ///< all, none, or a list of names of points, with '*' and '?'
 };
 

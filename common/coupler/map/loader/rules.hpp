@@ -34,7 +34,8 @@ void check_unreadable(const Areas& areas, const DraftPoints& points, const Limit
 void check_whole_areas(const Areas& whole, const Areas& unreadable, const DraftPoints& points,
                        const Map& head, const Context& context);
 
-/// To a broadcast points are written, and nothing is read.
+/// To a broadcast points are written, and nothing is read. A tool's output is off, as the device has
+/// acknowledged, before the other goes on.
 void check_broadcast(const Reader& top, const DraftPoints& points, const Map& head, const Context& context);
 
 /// No point stands in a reserved area.

@@ -1,55 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keys that join points: `sim:`, `counter:` and `latched:`.
-#include <algorithm>
 #include <unordered_map>
 #include <unordered_set>
 
 #include <fmt/format.h>
 
 #include "coupler/map/loader/map_reader.hpp"
+#include "coupler/map/loader/point_names.hpp"
 #include "coupler/map/loader/point_reader.hpp"
-#include "coupler/map/nearest.hpp"
 
 namespace coupler::loader {
 namespace {
 
 using codec::Type;
-
-/// The points by name, for keys that name other points.
-class PointNames {
- public:
-  explicit PointNames(const DraftPoints& points) {
-    for (const DraftPoint& draft : points) points_.emplace(draft.point.name, &draft.point);
-  }
-
-  /// The point of that name in that table. nullptr if there is none, which is a problem.
-  const Point* find(std::string_view name, Table table, Position at, std::string remedy,
-                    const Context& context) const {
-    const auto found = points_.find(name);
-    if (found != points_.end() && found->second->table == table) return found->second;
-    const std::string_view expected = table == Table::coils ? "a coil" : "a discrete input";
-    if (found == points_.end())
-      context.problems.error(
-          at, fmt::format("no point is called {}", shown(name)),
-          nearest_or(name, names_in(table), fmt::format("write the name of {}", expected)));
-    else
-      context.problems.error(
-          at, fmt::format("{} is in {}, not {}", shown(name), to_string(found->second->table), expected),
-          std::move(remedy));
-    return nullptr;
-  }
-
- private:
-  std::vector<std::string_view> names_in(Table table) const {
-    std::vector<std::string_view> names;
-    for (const auto& [name, point] : points_)
-      if (point->table == table) names.push_back(name);
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-
-  std::unordered_map<std::string_view, const Point*> points_;
-};
 
 class SimReader {
  public:

@@ -101,6 +101,13 @@ void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings) 
   }
 }
 
+void warn_of_tools(const Map& map, ConversionWarnings& warnings) {
+  for (const Tool& tool : map.tools)
+    if (!tool.close.empty() && !tool.open.empty())
+      warnings.add("nothing there keeps 'close' and 'open' of a tool from being on together",
+                   "switch one off before the other goes on", tool.name);
+}
+
 void warn_of_raw_meaning(const Point& point, bool writes_invalid, ConversionWarnings& warnings) {
   if (!point.invalid.empty() && !writes_invalid)
     warnings.add("raw values that mean 'no value' are left out, so they look like values",

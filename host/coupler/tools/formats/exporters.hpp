@@ -89,6 +89,9 @@ const Exporter* find_exporter(std::string_view name);
 /// for it.
 void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings);
 
+/// Warns that a program that writes the device has no tools, which never have both outputs on.
+void warn_of_tools(const Map& map, ConversionWarnings& warnings);
+
 /// Warns that the format says neither which raw values are none, unless it `writes_invalid`, or faults, nor
 /// that a point has the power of ten of the scale.
 void warn_of_raw_meaning(const Point& point, bool writes_invalid, ConversionWarnings& warnings);

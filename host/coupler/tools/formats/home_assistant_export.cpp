@@ -329,6 +329,7 @@ Export write_home_assistant(const Map& map) {
                      "use an adapter that does it by itself");
   const Entities entities = EntityWriter(map, out.warnings).write();
   warn_of_node_and_driver_keys(map, out.warnings);
+  warn_of_tools(map, out.warnings);
   out.text = "# Made by `coupler export --to home-assistant`.\n" + hub_of(map);
   if (!entities.binary_sensors.empty()) out.text += "    binary_sensors:\n" + entities.binary_sensors;
   if (!entities.switches.empty()) out.text += "    switches:\n" + entities.switches;

@@ -309,6 +309,15 @@ Rules rules_of_tls() {
   return rules;
 }
 
+/// One of `tools:`
+Rules rules_of_a_tool() {
+  const Json both_sensors{{"required", {"closed", "opened"}}};
+  return {{{"anyOf", {has("close"), has("open")}}},
+          {{"anyOf", {has("travel"), both_sensors}}},
+          {{"dependencies", {{"empty", {"holds"}}}}},
+          when(has("hold", not_true()), {{"required", {"close", "open"}}})};
+}
+
 }  // namespace
 
 Rules point_rules(Section section) {
@@ -327,6 +336,8 @@ Rules point_rules(Section section) {
     rules = rules_of_security();
   } else if (section == Section::tls) {
     rules = rules_of_tls();
+  } else if (section == Section::tool) {
+    rules = rules_of_a_tool();
   } else if (loader::overlap(section, bits)) {
     add_rules_of_bits(section, rules);
   } else if (loader::overlap(section, registers)) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a map may say of one point where that depends on another of its keys, and of the files of TLS: the
-// rules of loader/*_reader.cpp that a JSON Schema can say. It cannot compare two numbers, add them, or look
-// at another point.
+// What a map may say of one point or tool where that depends on another of its keys, and of the files of TLS:
+// the rules of loader/*_reader.cpp that a JSON Schema can say. It cannot compare two numbers, add them, or
+// look at another point.
 #pragma once
 
 #include <string_view>

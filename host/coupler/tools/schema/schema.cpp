@@ -38,14 +38,22 @@ Json points_of(Section section) {
                      {"additionalProperties", std::move(point)}});
 }
 
-/// name -> role.
-Json roles_of(Section section) {
-  return {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", or_nothing(object_of(section))}};
+/// name -> role, or name -> tool, which says more than nothing.
+Json named_of(Section section) {
+  Json each = object_of(section);
+  if (section == Section::role) each = or_nothing(std::move(each));
+  Json all{{"type", "object"}, {"minProperties", 1}, {"additionalProperties", std::move(each)}};
+  if (section == Section::tool)
+    all["propertyNames"] = {
+        {"pattern", part_of_a_ros_name},
+        {"patternErrorMessage", "a name begins with a letter and has letters, digits and '_'"},
+        {"not", {{"const", loader::wait_for_action}}}};
+  return all;
 }
 
 Json values_of(const Key& key) {
   if (key.kind == ValueKind::points) return points_of(key.inside);
-  if (key.kind == ValueKind::roles) return roles_of(key.inside);
+  if (key.kind == ValueKind::named) return named_of(key.inside);
   if (key.inside == Section::none) return value_schema(key);
   Json object = object_of(key.inside);
   if (key.inside == Section::mapping) return or_nothing(std::move(object));

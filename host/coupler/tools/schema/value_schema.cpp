@@ -202,7 +202,7 @@ Json value_schema(const Key& key) {
     case ValueKind::patterns:
       return any_of({{{"enum", {"all", "none"}}}, {{"type", "array"}, {"items", {{"type", "string"}}}}});
     case ValueKind::section:
-    case ValueKind::roles:
+    case ValueKind::named:
     case ValueKind::points: break;
   }
   return Json::object();

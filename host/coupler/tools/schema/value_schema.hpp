@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 /// Numbers of Modicon's count have up to six digits: '4' and a number up to 65536.
 constexpr int most_modicon_address = 465536;
 
-/// Returns the schema of a value of the key's kind, except for ValueKind::section and points.
+/// Returns the schema of a value of the key's kind, except for ValueKind::section, points and named.
 Json value_schema(const loader::Key& key);
 
 /// Returns the text for people who point at the key: what it means, what is allowed, what holds without it,
@@ -32,6 +32,9 @@ Json fallback_value(const loader::Key& key);
 constexpr std::string_view ros_name = "^[A-Za-z][A-Za-z0-9_]*(/[A-Za-z0-9_]+)*$";
 constexpr std::string_view ros_name_rule =
     "a name begins with a letter and has letters, digits and '_', with '/' between parts";
+
+/// The same without '/'.
+constexpr std::string_view part_of_a_ros_name = "^[A-Za-z][A-Za-z0-9_]*$";
 
 /// A number with its unit, as "500ms", of at most so many seconds.
 std::string duration_up_to(double most);

@@ -26,6 +26,9 @@ constexpr Place places[] = {
      "name: a\ndefaults: {@}\nmapping: {holding_registers: {b: {address: 0, type: INT}}}\n"},
     {Section::wire,
      "name: a\nmapping: {coils: {b: 0}, discrete_inputs: {c: 0}}\nsim: [{from: b, to: c, @}]\n"},
+    {Section::tool,
+     "name: a\ntools: {b: {close: c, open: d, closed: e, opened: f, holds: g, @}}\n"
+     "mapping: {coils: {c: 0, d: 1}, discrete_inputs: {e: 0, f: 1, g: 2}}\n"},
     {Section::edge,
      "name: a\nmapping: {discrete_inputs: {b: {address: 0, line: X}}, "
      "coils: {c: {address: 0, latched: {of: b, @}}}}\n"},

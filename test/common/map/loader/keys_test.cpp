@@ -45,7 +45,8 @@ TEST(Keys, What_holds_otherwise_is_a_value_that_one_may_write) {
 
 TEST(Keys, What_has_keys_inside_says_which) {
   for (const Key& key : all_keys()) {
-    const bool container = key.kind == ValueKind::section || key.kind == ValueKind::points;
+    const bool container =
+        key.kind == ValueKind::section || key.kind == ValueKind::points || key.kind == ValueKind::named;
     EXPECT_TRUE(!container || key.inside != Section::none) << key.name;
     EXPECT_TRUE(!key.several || key.inside != Section::none) << key.name;
   }

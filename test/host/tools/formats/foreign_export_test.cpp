@@ -50,6 +50,17 @@ TEST(Export, A_loss_of_many_points_is_told_once_with_how_many_they_are) {
             "m.yaml: warning: units are lost: p0, p1, p2, p3, p4, p5, p6, p7 and 12 more; write them down\n");
 }
 
+TEST(Export, What_writes_the_device_is_told_of_tools_with_two_outputs) {
+  const std::string points = "coils: {close: 0, open: 1, suction: 2}";
+  const std::string tools =
+      "tools: {clamp: {close: close, open: open, travel: 1s}, cup: {close: suction, travel: 1s}}, ";
+  for (const char* format : {"home-assistant", "st"})
+    EXPECT_THAT(told(format, points, tools),
+                HasSubstr("keeps 'close' and 'open' of a tool from being on together: clamp; switch one"))
+        << format;
+  EXPECT_THAT(told("telegraf", points, tools), Not(HasSubstr("clamp")));
+}
+
 TEST(TelegrafExport, What_it_cannot_say_is_told_with_the_points) {
   const std::string points =
       "coils: {c: {address: 0, access: write}}, holding_registers: {a: {address: 1, type: INT, scale: {gain: "

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "coupler/map/map.hpp"
+
+namespace coupler::docs {
+
+/// The texts about one tool, not yet escaped for any format. An empty text is left out.
+struct ToolDescription {
+  std::string name;
+  std::string closes;   ///< "valve_close on"
+  std::string opens;    ///< "valve_close off"
+  std::string closed;   ///< how it is known to be closed: "sensor_closed on for 30 ms", "after 300 ms"
+  std::string opened;   ///< the same of open
+  std::string holds;    ///< "part_present on"
+  std::string empty;    ///< what becomes of it when it is closed and holds no part: "fails", "closed"
+  std::string timeout;  ///< "after 800 ms"
+  std::string outputs;  ///< "off at the end, may be written by themselves"
+};
+
+/// A column of a table of tools.
+struct ToolColumn {
+  std::string_view title;
+  std::string ToolDescription::*text;
+};
+
+/// In the order in which tables have them; the first one is the name.
+constexpr ToolColumn tool_columns[] = {
+    {"tool", &ToolDescription::name},
+    {"closes by", &ToolDescription::closes},
+    {"opens by", &ToolDescription::opens},
+    {"closed", &ToolDescription::closed},
+    {"open", &ToolDescription::opened},
+    {"holds a part", &ToolDescription::holds},
+    {"without a part", &ToolDescription::empty},
+    {"stuck", &ToolDescription::timeout},
+    {"outputs", &ToolDescription::outputs},
+};
+
+ToolDescription describe(const Tool& tool);
+
+/// Those that one of the tools fills.
+std::vector<ToolColumn> used_columns(const std::vector<ToolDescription>& tools);
+
+}  // namespace coupler::docs

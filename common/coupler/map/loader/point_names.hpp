@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+#include "coupler/map/loader/draft_point.hpp"
+#include "coupler/map/loader/reader.hpp"
+
+namespace coupler::loader {
+
+/// The points by name, for keys that name other points.
+class PointNames {
+ public:
+  explicit PointNames(const DraftPoints& points);
+
+  /// The point of that name, or nullptr.
+  const DraftPoint* get(std::string_view name) const;
+
+  /// The same. That there is none is a problem, whose remedy is a name that is near, of the points that
+  /// `is_meant` finds good, or else to write the name of `expected`.
+  const DraftPoint* find(std::string_view name, Position at,
+                         const std::function<bool(const Point&)>& is_meant, std::string_view expected,
+                         const Context& context) const;
+
+  /// The point of that name in that table, which is one of bits. nullptr if there is none, which is a
+  /// problem; `remedy` is for a point in another table.
+  const Point* find(std::string_view name, Table table, Position at, std::string remedy,
+                    const Context& context) const;
+
+ private:
+  std::unordered_map<std::string_view, const DraftPoint*> points_;
+};
+
+}  // namespace coupler::loader

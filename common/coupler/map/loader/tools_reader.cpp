@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+// `tools:`, what the driver opens and closes.
+#include <algorithm>
+#include <optional>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "coupler/map/loader/map_reader.hpp"
+#include "coupler/map/loader/names.hpp"
+#include "coupler/map/loader/point_names.hpp"
+
+namespace coupler::loader {
+namespace {
+
+constexpr std::size_t most_tools = 64;
+
+constexpr std::string_view output_keys[] = {"close", "open"};
+constexpr std::string_view sensor_keys[] = {"closed", "opened", "holds"};
+
+constexpr std::string_view an_output = "a coil, or of a BOOL in a holding register";
+constexpr std::string_view a_sensor = "a discrete input, or of another single bit";
+
+bool is_single_bit(const Point& point) { return point.format.type == codec::Type::BOOL && point.count == 1; }
+bool can_drive(const Point& point) { return is_single_bit(point) && is_writable(point); }
+bool can_sense(const Point& point) { return is_single_bit(point) && is_readable(point); }
+
+bool is_on(Span<const std::uint16_t> bit) {
+  return std::any_of(bit.begin(), bit.end(), [](std::uint16_t word) { return word != 0; });
+}
+bool is_safe_on(const Point& point) {
+  return point.safe == Safe::on && (point.safe_value.empty() || is_on(point.safe_value));
+}
+/// It keeps its value where others go to their safe values.
+bool is_held(const Point& point) {
+  return point.safe == Safe::hold || (!holds_bits(point.table) && point.safe_value.empty());
+}
+
+/// What keeps a point from being part of a tool; `what` goes behind its name.
+struct Hindrance {
+  std::string what;
+  std::string remedy;
+};
+
+std::optional<Hindrance> no_single_bit(const Point& point, std::string_view key, std::string_view expected) {
+  if (is_single_bit(point)) return std::nullopt;
+  return Hindrance{fmt::format("{}, and '{}' is a single bit",
+                               point.count > 1 ? fmt::format("has {} values", point.count)
+                                               : fmt::format("has the type {}", to_string(point.format.type)),
+                               key),
+                   fmt::format("write the name of {}", expected)};
+}
+
+std::optional<Hindrance> no_sensor(const DraftPoint& draft, std::string_view key) {
+  if (auto wrong = no_single_bit(draft.point, key, a_sensor)) return wrong;
+  if (is_readable(draft.point)) return std::nullopt;
+  return Hindrance{"has 'access: write', so nobody can see it",
+                   "remove 'access', or write the name of another point"};
+}
+
+/// Collects the tools of a map.
+class ToolsReader {
+ public:
+  ToolsReader(const DraftPoints& points, const Context& context) : names_(points), context_(context) {}
+
+  void read(const Entry& entry) {
+    if (!check_name(entry)) return;
+    if (!check_map(entry, fmt::format("the tool '{}' holds its points and times", entry.key),
+                   fmt::format("write it as in '{}: {{close: valve, travel: 300ms}}'", entry.key), context_))
+      return;
+    const Reader reader(entry, Section::tool, context_);
+    Tool tool;
+    tool.name = context_.map.keep(std::string(entry.key));
+    const std::size_t errors = context_.problems.errors();
+    reader.fields(tool);
+    const bool has_its_values = context_.problems.errors() == errors;
+    check_outputs(reader, entry, tool);
+    check_sensors(reader, entry);
+    if (has_its_values) check_times(reader, tool);
+    warn_of_point(tool.name);
+    tools_.push_back(tool);
+  }
+
+  const std::vector<Tool>& tools() const { return tools_; }
+
+ private:
+  /// An output of a tool that stands before.
+  struct Taken {
+    std::string_view tool;
+    Position at;
+  };
+
+  void error(Position at, std::string what, std::string remedy) const {
+    context_.problems.error(at, std::move(what), std::move(remedy));
+  }
+
+  bool check_name(const Entry& entry) {
+    const std::string_view name = entry.key;
+    const auto [first, is_new] = first_.emplace(name, entry.key_at);
+    if (!is_relative_ros_name(name) || name.find('/') != std::string_view::npos)
+      error(entry.key_at, fmt::format("{} is not a valid name of a tool", shown(name)),
+            "begin with a letter and use letters, digits and '_'");
+    else if (name == wait_for_action)
+      error(entry.key_at, fmt::format("'{}' is an action of the driver itself", name),
+            "give the tool another name");
+    else if (!is_new)
+      context_.problems.error(
+          entry.key_at,
+          fmt::format("'{}' is already the name of a tool, in line {}", name, first->second.line),
+          "give every tool of the map a name of its own", {{first->second, "the other is here"}});
+    else
+      return true;
+    return false;
+  }
+
+  void check_outputs(const Reader& reader, const Entry& entry, const Tool& tool) {
+    if (reader.lacks("close") && reader.lacks("open"))
+      error(entry.key_at, fmt::format("'{}' has no 'close' and no 'open'", entry.key),
+            fmt::format("add one of them, with the name of {}", an_output));
+    for (const std::string_view key : output_keys) {
+      const auto why_not = [&](const DraftPoint& draft) {
+        return no_output(draft, key, reader, tool.direct);
+      };
+      const Entry* output = check_point(reader, key, can_drive, an_output, why_not);
+      if (output == nullptr) continue;
+      const auto [first, is_new] = taken_.emplace(output->text, Taken{tool.name, output->at});
+      if (!is_new && first->second.tool != tool.name)
+        context_.problems.error(output->at,
+                                fmt::format("{} is already an output of the tool '{}', in line {}",
+                                            shown(output->text), first->second.tool, first->second.at.line),
+                                "give each tool outputs of its own", {{first->second.at, "it is here"}});
+    }
+    check_never_both(reader);
+    // Off is the other end then.
+    if (!tool.hold && reader.lacks("close") != reader.lacks("open"))
+      error(reader.find("hold")->key_at, "'hold: false' is for a tool with 'close' and 'open'",
+            fmt::format("remove it: the tool leaves its end when '{}' goes off",
+                        reader.has("close") ? "close" : "open"));
+  }
+
+  /// Outside of its movements, too, no tool has both outputs on.
+  void check_never_both(const Reader& reader) const {
+    const Entry* close = reader.find("close");
+    const Entry* open = reader.find("open");
+    if (close == nullptr || open == nullptr || close->text == open->text) return;
+    const DraftPoint* closing = names_.get(close->text);
+    const DraftPoint* opening = names_.get(open->text);
+    if (closing == nullptr || opening == nullptr) return;
+    const auto both = [&](std::string_view when, std::string_view key) {
+      error(open->at, fmt::format("{} and {} {}", shown(close->text), shown(open->text), when),
+            fmt::format("write '{}: off' at one of them", key));
+    };
+    const auto goes_on_beside = [](const Point& a, const Point& b) {
+      return is_safe_on(a) && (is_safe_on(b) || is_held(b));
+    };
+    if (goes_on_beside(closing->point, opening->point) || goes_on_beside(opening->point, closing->point))
+      both("may both be on in their safe state", "safe");
+    if (is_on(closing->point.initial) && is_on(opening->point.initial)) both("are both on when a node starts", "initial");
+  }
+
+  static std::optional<Hindrance> no_output(const DraftPoint& draft, std::string_view key, const Reader& tool,
+                                            bool direct) {
+    const Point& point = draft.point;
+    if (auto wrong = no_single_bit(point, key, an_output)) return wrong;
+    if (!is_writable(point.table))
+      return Hindrance{fmt::format("is in {}, and '{}' is written", to_string(point.table), key),
+                       fmt::format("write the name of {}", an_output)};
+    if (!is_writable(point))
+      return Hindrance{fmt::format("has 'access: read', and '{}' is written", key),
+                       "remove 'access', or write the name of another point"};
+    if (is_pulsed(point))
+      return Hindrance{"has a 'pulse', so it would go off before the end is reached",
+                       tool.has("close") && tool.has("open")
+                           ? "remove 'pulse'; with 'hold: false' the tool switches it off at the end"
+                           : "remove 'pulse'"};
+    if (point.latched.present())
+      return Hindrance{"is 'latched': an edge of an input switches it on", "write the name of another point"};
+    if (point.host.deadman.present() && !direct)
+      return Hindrance{"has a 'deadman', which would move the tool",
+                       fmt::format("remove it{}, or write 'direct: true' below the tool",
+                                   draft.options.has("deadman") ? "" : " from 'defaults'")};
+    return std::nullopt;
+  }
+
+  void check_sensors(const Reader& reader, const Entry& entry) const {
+    for (const std::string_view key : sensor_keys)
+      check_point(reader, key, can_sense, a_sensor,
+                  [&](const DraftPoint& draft) { return no_sensor(draft, key); });
+    check_different(reader, entry.key);
+    if (reader.has("empty") && reader.lacks("holds"))
+      error(reader.find("empty")->key_at, "'empty' needs 'holds', which says whether there is a part",
+            "add that, or remove 'empty'");
+    const bool no_closed = reader.lacks("closed");
+    const bool no_opened = reader.lacks("opened");
+    if (!reader.lacks("travel") || (!no_closed && !no_opened)) return;
+    if (no_closed && no_opened)
+      error(entry.key_at, fmt::format("'{}' has neither 'closed' nor 'opened', and no 'travel'", entry.key),
+            "add 'travel', how long it takes to an end, as in 'travel: 300ms'");
+    else
+      error(
+          entry.key_at,
+          fmt::format("'{}' has no '{}' sensor and no 'travel'", entry.key, no_closed ? "closed" : "opened"),
+          "give one, as in 'travel: 300ms'");
+  }
+
+  /// Returns the key's value if it names a point without a hindrance.
+  template <class Why>
+  const Entry* check_point(const Reader& reader, std::string_view key, bool (*is_meant)(const Point&),
+                           std::string_view expected, const Why& why_not) const {
+    const Entry* value = reader.find(key);
+    if (value == nullptr || value->kind != Entry::Kind::scalar) return nullptr;  // a problem already
+    const DraftPoint* draft = names_.find(value->text, value->at, is_meant, expected, context_);
+    if (draft == nullptr || !draft->placed) return nullptr;
+    auto hindrance = why_not(*draft);
+    if (!hindrance) return value;
+    error(value->at, fmt::format("{} {}", shown(value->text), hindrance->what), std::move(hindrance->remedy));
+    return nullptr;
+  }
+
+  /// No point is two parts of one tool.
+  void check_different(const Reader& reader, std::string_view tool) const {
+    std::unordered_map<std::string_view, std::string_view> key_of;
+    for (const std::string_view key : {"close", "open", "closed", "opened", "holds"}) {
+      const Entry* value = reader.find(key);
+      if (value == nullptr || value->kind != Entry::Kind::scalar) continue;
+      const auto [first, is_new] = key_of.emplace(value->text, key);
+      if (is_new) continue;
+      error(value->at,
+            fmt::format("{} is both '{}' and '{}' of '{}'", shown(value->text), first->second, key, tool),
+            key == "open" ? "remove 'open': without it the tool opens when 'close' is off"
+                          : fmt::format("write the name of another point, or remove '{}'", key));
+    }
+  }
+
+  void check_times(const Reader& reader, const Tool& tool) const {
+    const Entry* travel = reader.find("travel");
+    const Entry* timeout = reader.find("timeout");
+    const Entry* settle = reader.find("settle");
+    if (travel != nullptr && tool.travel > tool.timeout && timeout != nullptr)
+      error(travel->at, "'travel' is longer than 'timeout', after which the tool is stuck",
+            "make 'timeout' as long at least");
+    else if (travel != nullptr && tool.travel > tool.timeout)
+      error(travel->at,
+            fmt::format("'travel' is longer than 'timeout', which is {} if not given",
+                        find_key("timeout", Section::tool)->fallback),
+            "add 'timeout', after which the tool is stuck");
+    if (settle != nullptr && tool.settle >= tool.timeout)
+      error(settle->at, "'settle' is not shorter than 'timeout', so no sensor would count in time",
+            "make 'settle' shorter, or 'timeout' longer");
+  }
+
+  void warn_of_point(std::string_view tool) const {
+    const std::string name = fmt::format("{}/state", tool);
+    if (const DraftPoint* draft = names_.get(name))
+      context_.problems.warning(
+          draft->name_at,
+          fmt::format("'{}' is also the topic of the tool '{}', and the point takes its place", name, tool),
+          "give the point or the tool another name");
+  }
+
+  PointNames names_;
+  const Context& context_;
+  std::vector<Tool> tools_;
+  std::unordered_map<std::string_view, Position> first_;  ///< tools by name
+  std::unordered_map<std::string_view, Taken> taken_;     ///< outputs by name
+};
+
+}  // namespace
+
+std::vector<Tool> read_tools(const Reader& top, const DraftPoints& points, const Context& context) {
+  const Entry* entry = top.find("tools");
+  constexpr std::string_view example = "'tools: {clamp: {close: valve, travel: 300ms}}'";
+  if (entry == nullptr ||
+      !check_map(*entry, "'tools' holds the tools", fmt::format("write them as in {}", example), context))
+    return {};
+  if (entry->children.empty())
+    context.problems.error(entry->key_at, "'tools' has no tool", fmt::format("add one, as in {}", example));
+  if (entry->children.size() > most_tools) {
+    context.problems.error(
+        entry->key_at,
+        fmt::format("there are {} tools, and a map has at most {}", entry->children.size(), most_tools),
+        "write the others into a second map of the device, with another name");
+    return {};
+  }
+  ToolsReader reader(points, context);
+  for (const Entry& tool : entry->children) reader.read(tool);
+  return reader.tools();
+}
+
+}  // namespace coupler::loader
