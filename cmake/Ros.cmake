@@ -4,7 +4,7 @@
 set(COUPLER_WITH_ROS OFF)
 set(messages BoolArray.msg BoolSample.msg BoolStamped.msg Float64Sample.msg Float64Stamped.msg Int64Sample.msg Int64Stamped.msg
              PointInfo.msg PointQuality.msg PointStatus.msg Points.msg Scheduled.msg ScheduledWrite.msg Status.msg
-             StringSample.msg StringStamped.msg UInt64Sample.msg UInt64Stamped.msg)
+             StringSample.msg StringStamped.msg ToolState.msg UInt64Sample.msg UInt64Stamped.msg)
 set(actions WaitFor.action)
 set(services CancelScheduled.srv ListScheduled.srv Read.srv Schedule.srv Write.srv)
 set(left_out "no catkin, roscpp, std_srvs, diagnostic_updater, actionlib or libmodbus, or COUPLER_ROS=OFF; scripts/install-packages build ros")

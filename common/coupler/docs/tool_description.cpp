@@ -27,7 +27,7 @@ std::string arrival(std::string_view sensor, const Tool& tool) {
 
 std::string outputs(const Tool& tool) {
   std::string text = tool.hold ? "" : "off at the end";
-  if (tool.direct) text += fmt::format("{}may be written by themselves", text.empty() ? "" : ", ");
+  if (tool.direct) text += fmt::format("{}may be written directly", text.empty() ? "" : ", ");
   return text;
 }
 

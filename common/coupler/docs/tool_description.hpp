@@ -19,7 +19,7 @@ struct ToolDescription {
   std::string holds;    ///< "part_present on"
   std::string empty;    ///< what becomes of it when it is closed and holds no part: "fails", "closed"
   std::string timeout;  ///< "after 800 ms"
-  std::string outputs;  ///< "off at the end, may be written by themselves"
+  std::string outputs;  ///< "off at the end, may be written directly"
 };
 
 /// A column of a table of tools.

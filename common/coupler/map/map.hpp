@@ -141,7 +141,7 @@ struct Tool {
   std::chrono::milliseconds settle{0};      ///< an input counts when it has been on for so long
   bool hold = true;  ///< its output stays on at the end; otherwise it is switched off there
   OnEmpty empty = OnEmpty::abort;
-  bool direct = false;  ///< its outputs may be written by themselves, too
+  bool direct = false;  ///< programs may also write its outputs directly
 };
 
 /// One wire of the simulated chip: `from` an output `to` an input, or a square wave `to` an input.

@@ -110,6 +110,42 @@ TEST_F(SafeValuesTest, Without_any_no_turn_is_kept) {
   EXPECT_TRUE(is_turn_free());
 }
 
+TEST_F(SafeValuesTest, What_waits_for_an_output_of_a_tool_is_superseded_though_that_has_no_safe_value) {
+  static constexpr Tool clamp = [] {
+    Tool tool;
+    tool.close = "hold";
+    return tool;
+  }();
+  fakes::MapBuilder builder;
+  builder.add(Table::coils, "hold", 2, Type::BOOL, [](Point& point) { point.safe = Safe::hold; });
+  builder.head().tools = {&clamp, 1};
+  start(builder, Verify::off);
+  run_for(milliseconds(50));
+  push("hold", 1);
+  engine->make_safe();
+  run_for(milliseconds(50));
+  EXPECT_EQ(engine->statistics().written(Outcome::superseded), 1U);
+  EXPECT_EQ((device.values[{Table::coils, 2}]), 0);
+}
+
+TEST_F(SafeValuesTest, Of_the_outputs_of_a_tool_those_that_go_off_are_written_first) {
+  static constexpr Tool clamp = [] {
+    Tool tool;
+    tool.close = "close";
+    tool.open = "open";
+    return tool;
+  }();
+  fakes::MapBuilder builder;
+  builder.add(Table::coils, "close", 0, Type::BOOL, [](Point& point) { point.safe = Safe::on; });
+  builder.coil("lamp", 1).coil("open", 20);
+  builder.head().tools = {&clamp, 1};
+  const MapPtr map = builder.build();
+  const std::vector<Write> values = safe_values(map->map());
+  ASSERT_EQ(values.size(), 3U);
+  EXPECT_EQ(map->map().points[values[0].point].name, "open");
+  EXPECT_EQ(map->map().points[values[1].point].name, "close");
+}
+
 TEST_F(SafeValuesTest, The_next_message_drives_again) {
   start_online();
   engine->make_safe();

@@ -298,7 +298,7 @@ constexpr Key keys[] = {
     project("empty", S::tool, K::choice, "ok", "what it means to be closed without a part")
         .otherwise("abort")
         .one_of<OnEmpty>(),
-    project("direct", S::tool, K::boolean, "true", "whether its outputs may be written by themselves, too")
+    project("direct", S::tool, K::boolean, "true", "whether programs may also write its outputs directly")
         .otherwise("false"),
     // `scale:`, `iio:`, `pwm:`, `deadman:`
     project("gain", S::scale, K::number, "0.1", "raw is multiplied by it").otherwise("1"),

@@ -155,7 +155,8 @@ class ToolsReader {
     };
     if (goes_on_beside(closing->point, opening->point) || goes_on_beside(opening->point, closing->point))
       both("may both be on in their safe state", "safe");
-    if (is_on(closing->point.initial) && is_on(opening->point.initial)) both("are both on when a node starts", "initial");
+    if (is_on(closing->point.initial) && is_on(opening->point.initial))
+      both("are both on when a node starts", "initial");
   }
 
   static std::optional<Hindrance> no_output(const DraftPoint& draft, std::string_view key, const Reader& tool,
@@ -238,12 +239,12 @@ class ToolsReader {
     const Entry* settle = reader.find("settle");
     if (travel != nullptr && tool.travel > tool.timeout && timeout != nullptr)
       error(travel->at, "'travel' is longer than 'timeout', after which the tool is stuck",
-            "make 'timeout' as long at least");
+            "make 'timeout' at least as long");
     else if (travel != nullptr && tool.travel > tool.timeout)
       error(travel->at,
             fmt::format("'travel' is longer than 'timeout', which is {} if not given",
                         find_key("timeout", Section::tool)->fallback),
-            "add 'timeout', after which the tool is stuck");
+            "add a 'timeout' that is at least as long as 'travel'");
     if (settle != nullptr && tool.settle >= tool.timeout)
       error(settle->at, "'settle' is not shorter than 'timeout', so no sensor would count in time",
             "make 'settle' shorter, or 'timeout' longer");

@@ -9,6 +9,8 @@
 #include "coupler/host/core/value_text.hpp"
 #include "coupler/map/nearest.hpp"
 #include "coupler/map/printable.hpp"
+#include "coupler/plan/explain.hpp"
+#include "coupler/plan/planner.hpp"
 
 namespace coupler::host {
 
@@ -19,6 +21,14 @@ tl::expected<const Point*, std::string> point_named(const Map& map, std::string_
   for (const Point& point : map.points) names.push_back(point.name);
   return tl::unexpected(fmt::format("there is no point {} in the map of {}; {}", excerpt(name), map.name,
                                     nearest_or(name, names, "the map has their names")));
+}
+
+tl::expected<const Point*, std::string> read_point_named(const Map& map, std::string_view name) {
+  const auto point = point_named(map, name);
+  if (!point) return point;
+  if (const auto reason = plan::why_not_read(map, **point))
+    return tl::unexpected(fmt::format("{} is never read: it is {}", (*point)->name, plan::words_of(*reason)));
+  return point;
 }
 
 tl::expected<Write, std::string> write_named(const Map& map, std::string_view name, std::string_view text) {

@@ -61,4 +61,11 @@ class WallTime {
   std::uint32_t times_set_ = 0;
 };
 
+/// The difference as it is now, by the best of several measurements, since one may be interrupted.
+inline WallTime measured_wall_time() {
+  WallTime wall;
+  for (int i = 0; i < 5; ++i) wall.measure();
+  return wall;
+}
+
 }  // namespace coupler::host

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "coupler/codec/number.hpp"
 #include "coupler/host/core/error.hpp"
 
 namespace coupler::host {
@@ -89,10 +90,21 @@ Write make_write(const Map& map, std::uint32_t point, Span<const std::uint16_t> 
   return write;
 }
 
+Write make_bit_write(const Map& map, std::uint32_t point, bool on) {
+  const Point& bit = map.points[point];
+  const std::uint16_t value =
+      holds_bits(bit.table) ? std::uint16_t{on} : codec::encode_part(on ? 1 : 0, bit.format);
+  return make_write(map, point, {&value, 1});
+}
+
 std::vector<Write> safe_values(const Map& map) {
   std::vector<Write> values;
   for (std::uint32_t i = 0; i < map.points.size(); ++i)
     if (const auto value = safe_value(map, i)) values.push_back(*value);
+  // Both outputs of a tool must not be on.
+  std::stable_partition(values.begin(), values.end(), [&](const Write& write) {
+    return tool_with_output(map, map.points[write.point].name) != nullptr && write.registers[0] == 0;
+  });
   return values;
 }
 

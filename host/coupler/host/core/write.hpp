@@ -117,6 +117,9 @@ struct Write {
 /// for each bit. An empty value is all zero.
 Write make_write(const Map& map, std::uint32_t point, Span<const std::uint16_t> value);
 
+/// Makes a write of a bit, which may be one of a register.
+Write make_bit_write(const Map& map, std::uint32_t point, bool on);
+
 /// Returns a write of the safe value for each output, by Point::safe and Point::safe_value, except for those
 /// that hold their values. A register that has no safe value is left alone unless it is an analogue output.
 std::vector<Write> safe_values(const Map& map);

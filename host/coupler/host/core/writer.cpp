@@ -41,6 +41,8 @@ Writer::Writer(const Map& map, Link& link, DeviceStatistics& statistics, ValueTa
       batch_(map),
       done_(map) {
   for (const Write& write : safe_values_) is_safe_point_[write.point] = true;
+  for (std::uint32_t i = 0; i < map.points.size(); ++i)
+    if (tool_with_output(map, map.points[i].name) != nullptr) is_safe_point_[i] = true;
 }
 
 void Writer::push(const Write& write) {

@@ -148,7 +148,9 @@ class Writer {
   void drop_late();
   bool withdraws() const { return written_ != nullptr && written_->withdraws(); }
   bool restores(const Write& write) const {
-    return map_.on_reconnect == OnReconnect::restore && !is_pulsed(map_.points[write.point]);
+    const Point& point = map_.points[write.point];
+    return map_.on_reconnect == OnReconnect::restore && !is_pulsed(point) &&
+           tool_with_output(map_, point.name) == nullptr;  // it would move
   }
   std::string_view name(std::uint32_t point) const { return map_.points[point].name; }
 
@@ -167,7 +169,7 @@ class Writer {
   std::set<std::uint32_t> owed_;
   bool owes_ = false;  ///< the newer value for one of these was not written
   std::vector<Write> safe_values_;
-  std::vector<bool> is_safe_point_;  ///< by point: whether safe_values_ has a value of it
+  std::vector<bool> is_safe_point_;  ///< by point: safe values replace what waits for it; also of tools
   Calls safe_calls_;
   std::vector<bool> acknowledged_;   ///< by point: a write was acknowledged, and no value was published since
   WriteBatch batch_;                 ///< in flight

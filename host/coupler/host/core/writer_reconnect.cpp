@@ -16,8 +16,9 @@ using Outcome = WriteResult::Outcome;
 constexpr auto suspect_retry = std::chrono::seconds(10);
 
 /// Returns what happens to a write that waits while there is no connection.
-std::string_view unconnected_text(const Point& point, const Write& write) {
-  if (write.until != Time::max()) return "not connected";
+std::string_view unconnected_text(const Map& map, const Write& write) {
+  const Point& point = map.points[write.point];
+  if (write.until != Time::max() || tool_with_output(map, point.name) != nullptr) return "not connected";
   if (is_pulsed(point)) return "not connected; a pulse is not written when the device is back";
   return "not connected; with 'on_reconnect: restore' in the map it would be written when the device is back";
 }
@@ -162,7 +163,7 @@ void Writer::drop(const Write& write) {
     throw;
   }
   const WriteResult result = {keeps ? Outcome::kept : Outcome::dropped, std::nullopt,
-                              unconnected_text(map_.points[write.point], write)};
+                              unconnected_text(map_, write)};
   tell(write, result);
   if (keeps || dropped_++ > 0) return;
   sink_.on_report(Level::warning,

@@ -2,12 +2,14 @@
 #include "coupler/host/ros/device_driver.hpp"
 
 #include <algorithm>
+#include <future>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "coupler/codec/text.hpp"
 #include "coupler/host/ros/device_panel.hpp"
+#include "coupler/host/ros/device_tools.hpp"
 #include "coupler/host/ros/device_waits.hpp"
 #include "coupler/host/ros/shutdown.hpp"
 #include "coupler/host/ros/start_progress.hpp"
@@ -91,7 +93,7 @@ DeviceDriver::DeviceDriver(Node& node, const Map& map, std::unique_ptr<Link> lin
       services_(map, values_, subscribers_),
       link_(traced(std::move(link), std::string(map.name), node)),
       thread_(map, map.verify, load_served_map, *link_, values_, *this),
-      writes_{[this](const Write& write) { driven().write(write); },
+      writes_{[this](const Write& write) { accept(write); },
               [this](std::optional<std::uint32_t> point, const std::string& what) { refuse(point, what); }} {}
 
 void DeviceDriver::begin(const Followed& followed) {
@@ -108,11 +110,12 @@ void DeviceDriver::begin(const Followed& followed) {
     });
   subscribers_.on_each([this](std::uint32_t point) { thread_.want(point, true); });
   // Before the topics, which take minutes for many points: safe values are available before any write is.
-  services_.start(
-      node_, {writes_, [this] { return driven().reset_watchdog(); }, [this] { return driven().make_safe(); },
-              [this](const ScheduledWrite& what) { return driven().schedule(what); },
-              [this](std::uint32_t number) { return thread_.cancel_scheduled(number); },
-              [this] { return thread_.scheduled(); }, [this] { return thread_.statistics(); }});
+  services_.start(node_,
+                  {writes_, [this] { return driven().reset_watchdog(); }, [this] { return make_safe(); },
+                   [this](const ScheduledWrite& what) { return schedule(what); },
+                   [this](std::uint32_t number) { return thread_.cancel_scheduled(number); },
+                   [this] { return thread_.scheduled(); }, [this] { return thread_.statistics(); }});
+  for (const auto& follower : followers_) follower->begin();
   for_each_point(node_, map_, "have their topics and services for writes", [this](std::uint32_t i) {
     if (!is_writable(map_.points[i])) return;
     subscriptions_.push_back(node_.subscribe(topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
@@ -133,6 +136,10 @@ void DeviceDriver::start_followers(const Followed& followed) {
   };
   if (followed.recording) add(DeviceRecording::start(map_, values_, *followed.recording, report));
   if (followed.panel) add(start_panel(map_, values_, *followed.panel, report));
+  if (!map_.tools.empty())
+    add(DeviceTools::start(
+        node_, map_, values_, subscribers_, [this](const Write& write) { driven().write(write); },
+        [this](std::uint32_t point) { thread_.want(point, true); }));
   if (can_wait_for(map_))
     add(DeviceWaits::start(node_, map_, values_, subscribers_,
                            [this](std::uint32_t point) { thread_.want(point, true); }));
@@ -283,8 +290,46 @@ void DeviceDriver::refuse(std::optional<std::uint32_t> point, const std::string&
     refused.point = *point;
     thread_.refuse(refused, what);
   }
+  say_refused(what);
+}
+
+void DeviceDriver::say_refused(const std::string& what) {
   const auto now = std::chrono::steady_clock::now();
   if (const auto line = refused_lines_.say("refused a write to " + what, now)) log(Level::warning, *line);
+}
+
+/// Writes it, unless it belongs to a tool.
+void DeviceDriver::accept(const Write& write) {
+  const Point& point = map_.points[write.point];
+  const std::string why = why_not_direct(map_, point);
+  if (why.empty()) {
+    for (const auto& follower : followers_) follower->write_comes(write.point);
+    return driven().write(write);
+  }
+  thread_.refuse(write, why);
+  say_refused(fmt::format("{}: {}", point.name, why));
+}
+
+/// What a follower does meanwhile is over, too.
+std::future<CallAnswer> DeviceDriver::make_safe() {
+  const auto tell = [this] {
+    for (const auto& follower : followers_) follower->safe_comes();
+  };
+  tell();
+  auto made = driven().make_safe();
+  tell();
+  return made;
+}
+
+std::future<ScheduleAnswer> DeviceDriver::schedule(const ScheduledWrite& what) {
+  const std::string why = why_not_direct(map_, map_.points[what.write.point]);
+  if (why.empty()) {
+    for (const auto& follower : followers_) follower->write_comes(what.write.point);
+    return driven().schedule(what);
+  }
+  std::promise<ScheduleAnswer> refused;
+  refused.set_value({0, "refused: " + why});
+  return refused.get_future();
 }
 
 }  // namespace coupler::host

@@ -77,6 +77,10 @@ class DeviceDriver : public Sink {
   void forget(std::uint32_t point);
   void check_text(std::uint32_t point);
   void measure_wall();
+  void accept(const Write& write);
+  std::future<CallAnswer> make_safe();
+  std::future<ScheduleAnswer> schedule(const ScheduledWrite& what);
+  void say_refused(const std::string& what);
   void refuse(std::optional<std::uint32_t> point, const std::string& what);
 
   Node& node_;

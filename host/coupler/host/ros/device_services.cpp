@@ -8,12 +8,10 @@
 
 #include <fmt/format.h>
 
-#include "coupler/codec/number.hpp"
 #include "coupler/host/core/health.hpp"
 #include "coupler/host/core/named_write.hpp"
 #include "coupler/host/core/value_text.hpp"
 #include "coupler/map/printable.hpp"
-#include "coupler/plan/explain.hpp"
 #include "coupler/plan/planner.hpp"
 
 namespace coupler::host {
@@ -131,8 +129,7 @@ ScheduleAnswer DeviceServices::answer_schedule(const ServiceThread::ScheduleRequ
   using std::chrono::milliseconds;
   const auto write = write_named(map_, request.point, request.value);
   if (!write) return {0, write.error()};
-  WallTime now;
-  for (int i = 0; i < 5; ++i) now.measure();  // the best counts: a measurement may be interrupted
+  const WallTime now = measured_wall_time();
   // Another measurement would map the same time to another instant, and so to another order.
   if (!wall_.agrees_with(now) || now.error() < wall_.error() / 10) wall_ = now;
   ScheduledWrite what{*write, wall_.at(request.at), {}, request.at};
@@ -158,25 +155,18 @@ std::vector<ServiceThread::ListedWrite> DeviceServices::answer_list() {
 }
 
 CallAnswer DeviceServices::answer_set(std::uint32_t index, bool on) {
-  const Point& point = map_.points[index];
-  const std::uint16_t value =
-      holds_bits(point.table) ? std::uint16_t{on} : codec::encode_part(on ? 1 : 0, point.format);
-  const auto outcome = write(make_write(map_, index, {&value, 1}));
+  const auto outcome = write(make_bit_write(map_, index, on));
   return {outcome.outcome == Outcome::ok, outcome.text};
 }
 
 ServiceThread::ReadAnswer DeviceServices::answer_read(const std::string& name) {
   ServiceThread::ReadAnswer answer;
-  const auto named = point_named(map_, name);
+  const auto named = read_point_named(map_, name);
   if (!named) {
     answer.message = named.error();
     return answer;
   }
   const Point& point = **named;
-  if (const auto reason = plan::why_not_read(map_, point)) {
-    answer.message = fmt::format("{} is never read: it is {}", point.name, plan::words_of(*reason));
-    return answer;
-  }
   const std::uint32_t index = index_of(point);
   const auto now = std::chrono::steady_clock::now();
   subscribers_.add(index);

@@ -10,8 +10,6 @@
 #include <fmt/format.h>
 
 #include "coupler/host/core/named_write.hpp"
-#include "coupler/plan/explain.hpp"
-#include "coupler/plan/planner.hpp"
 
 namespace coupler::host {
 namespace {
@@ -26,13 +24,6 @@ GoalEnd end_of(WaitResult::End end) {
     case WaitResult::End::cancelled: break;
   }
   return GoalEnd::cancelled;
-}
-
-/// The best of several counts: a measurement may be interrupted.
-WallTime measured_wall() {
-  WallTime wall;
-  for (int i = 0; i < 5; ++i) wall.measure();
-  return wall;
 }
 
 double seconds(std::chrono::nanoseconds duration) { return std::chrono::duration<double>(duration).count(); }
@@ -55,34 +46,28 @@ DeviceWaits::DeviceWaits(Node& node, const Map& map, const ValueTable& values, S
                          std::function<void(std::uint32_t)> ask)
     : map_(map),
       subscribers_(subscribers),
+      thread_([this](Time now) { return waits_.step(now); }),
       waits_(
-          map_, values, std::chrono::steady_clock::now(), [this] { wake(); }, std::move(ask)),
+          map_, values, std::chrono::steady_clock::now(), [this] { thread_.wake(); }, std::move(ask)),
       server_(node.offer_wait_for(fmt::format("{}/{}", map_.name, action_name),
                                   {[this](WaitForServer& server, GoalNumber number, Time received,
                                           const Goal& goal) { begin(server, number, received, goal); },
-                                   [this](GoalNumber number) { waits_.cancel(number); }})),
-      thread_([this] { run(); }) {}
+                                   [this](GoalNumber number) { waits_.cancel(number); }})) {
+  thread_.start();
+}
 
 DeviceWaits::~DeviceWaits() { DeviceWaits::end(); }
 
 void DeviceWaits::end() {
-  if (!thread_.joinable()) return;
   end_comes();
-  {
-    const std::lock_guard lock(mutex_);
-    ended_ = true;
-  }
-  changed_.notify_one();
-  thread_.join();
+  thread_.end();  // what has ended by then has its result
 }
 
 /// Returns what a goal asks for, or what is wrong with it and the remedy.
 tl::expected<WaitGoal, std::string> DeviceWaits::understood(const Goal& goal, Time now) const {
-  const auto named = point_named(map_, goal.point);
+  const auto named = read_point_named(map_, goal.point);
   if (!named) return tl::unexpected(named.error());
   const Point& point = **named;
-  if (const auto reason = plan::why_not_read(map_, point))
-    return tl::unexpected(fmt::format("{} is never read: it is {}", point.name, plan::words_of(*reason)));
   const auto condition = Condition::parse(point, goal.condition, goal.value);
   if (!condition) return tl::unexpected(condition.error());
   if (goal.timeout <= goal.timeout.zero() || goal.timeout > longest_wait)
@@ -93,7 +78,7 @@ tl::expected<WaitGoal, std::string> DeviceWaits::understood(const Goal& goal, Ti
                                       seconds(goal.for_at_least), seconds(goal.timeout)));
   Time since = now;
   if (goal.since != goal.since.zero()) {
-    const WallTime wall = measured_wall();
+    const WallTime wall = measured_wall_time();
     since = wall.at(goal.since);
     if (since > now + wall.error())
       return tl::unexpected(fmt::format("'since' is {:g} s ahead; send a time that has passed, or 0 for now",
@@ -116,7 +101,7 @@ void DeviceWaits::begin(WaitForServer& server, GoalNumber number, Time received,
   } catch (const std::exception& error) {  // no memory: the goal ends, and the driver goes on
     return finish(server, number, point, {WaitResult::End::not_met, {}, {}, error.what()});
   }
-  if (has_ended()) waits_.step(received);  // the thread may not see it any more
+  if (thread_.has_ended()) waits_.step(received);  // the thread may not see it any more
 }
 
 void DeviceWaits::finish(WaitForServer& server, GoalNumber number, std::uint32_t point,
@@ -124,41 +109,11 @@ void DeviceWaits::finish(WaitForServer& server, GoalNumber number, std::uint32_t
   subscribers_.remove(point);
   WaitForServer::Result sent{result.end == WaitResult::End::met, result.value, {}, {}, result.reason};
   if (sent.met) {
-    const WallTime wall = measured_wall();
+    const WallTime wall = measured_wall_time();
     sent.stamp = wall.of(result.stamp.at);
     sent.uncertainty = result.stamp.uncertainty + wall.error();
   }
   server.finish(number, end_of(result.end), sent);
-}
-
-bool DeviceWaits::has_ended() {
-  const std::lock_guard lock(mutex_);
-  return ended_;
-}
-
-void DeviceWaits::wake() {
-  {
-    const std::lock_guard lock(mutex_);
-    woken_ = true;
-  }
-  changed_.notify_one();
-}
-
-void DeviceWaits::run() {
-  Time next = Time::max();
-  std::unique_lock lock(mutex_);
-  for (bool is_last = false; !is_last;) {
-    const auto is_due = [this] { return woken_ || ended_; };
-    if (next == Time::max())
-      changed_.wait(lock, is_due);
-    else
-      changed_.wait_until(lock, next, is_due);
-    woken_ = false;
-    is_last = ended_;  // what has ended by then has its result
-    lock.unlock();
-    next = waits_.step(std::chrono::steady_clock::now());
-    lock.lock();
-  }
 }
 
 }  // namespace coupler::host

@@ -2,18 +2,16 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <thread>
 
 #include <tl/expected.hpp>
 
 #include "coupler/host/core/value_table.hpp"
 #include "coupler/host/core/wall_time.hpp"
+#include "coupler/host/motion/step_thread.hpp"
 #include "coupler/host/motion/waits.hpp"
 #include "coupler/host/ros/action.hpp"
 #include "coupler/host/ros/follower.hpp"
@@ -58,19 +56,12 @@ class DeviceWaits final : public Follower, private Sink {
   tl::expected<WaitGoal, std::string> understood(const Goal& goal, Time now) const;
   void begin(WaitForServer& server, GoalNumber number, Time received, const Goal& goal);
   void finish(WaitForServer& server, GoalNumber number, std::uint32_t point, const WaitResult& result);
-  void wake();
-  bool has_ended();
-  void run();
 
   const Map map_;
   SubscriberCounts& subscribers_;
+  StepThread thread_;
   Waits waits_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool woken_ = false;
-  bool ended_ = false;
   std::unique_ptr<WaitForServer> server_;
-  std::thread thread_;  // last: it uses the others
 };
 
 }  // namespace coupler::host

@@ -17,6 +17,12 @@ class Follower {
   virtual void report(const DeviceSnapshot& /*device*/, Time /*now*/) {}
   /// Nobody reads the point any more, or somebody does again. It must not wait for anything.
   virtual void wanted(std::uint32_t /*point*/) {}
+  /// The device's services are there, and its thread runs.
+  virtual void begin() {}
+  /// Somebody writes the point. It must not wait for anything.
+  virtual void write_comes(std::uint32_t /*point*/) {}
+  /// Safe values were requested. It must not wait for anything.
+  virtual void safe_comes() {}
   /// From now on a lost connection is no news.
   virtual void end_comes() {}
   /// After the outputs are safe: takes its time if a disk does.

@@ -20,6 +20,7 @@
 #include "coupler/host/core/sink.hpp"
 #include "coupler/host/core/wall_time.hpp"
 #include "coupler/host/core/write.hpp"
+#include "coupler/host/motion/tool_motion.hpp"
 #include "coupler/host/ros/action.hpp"
 #include "coupler/host/ros/sample.hpp"
 #include "coupler/map/map.hpp"
@@ -95,7 +96,8 @@ struct WriteHandler {
   std::function<void(std::optional<std::uint32_t> point, const std::string& what)> refuse;
 };
 
-/// Answers services in a thread of its own, one call after the other: each may wait for its result.
+/// Answers services in threads of its own, by default in one, so one call after the other: each may wait for
+/// its result.
 class ServiceThread {
  public:
   struct ReadAnswer {
@@ -195,7 +197,11 @@ class Node {
   using PublishScheduled = std::function<void(const ScheduledOutcome&)>;
   virtual PublishScheduled advertise_scheduled(const std::string& topic, const Map& map,
                                                const WallTime& wall) = 0;
-  virtual std::unique_ptr<ServiceThread> make_service_thread() = 0;
+  /// coupler_driver/ToolState, latched. From one thread only. `since` is wall time.
+  using PublishToolState = std::function<void(const ToolStatus&, std::chrono::nanoseconds since)>;
+  virtual PublishToolState advertise_tool_state(const std::string& topic) = 0;
+  /// `calls`: how many it answers at a time.
+  virtual std::unique_ptr<ServiceThread> make_service_thread(std::size_t calls = 1) = 0;
   /// Serves coupler_driver/WaitFor as long as the result exists.
   virtual std::unique_ptr<WaitForServer> offer_wait_for(const std::string& name,
                                                         WaitForServer::Handler handler) = 0;

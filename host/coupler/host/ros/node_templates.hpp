@@ -219,6 +219,26 @@ Node::PublishScheduled scheduled_with(const Publisher& publisher, const Map& map
   };
 }
 
+/// Used by Node::advertise_tool_state(): the publisher is one of coupler_driver/ToolState.
+template <class Message, class Publisher>
+Node::PublishToolState tool_state_with(const Publisher& publisher) {
+  static_assert(static_cast<int>(ToolState::unknown) == Message::UNKNOWN &&
+                static_cast<int>(ToolState::opening) == Message::OPENING &&
+                static_cast<int>(ToolState::open) == Message::OPEN &&
+                static_cast<int>(ToolState::closing) == Message::CLOSING &&
+                static_cast<int>(ToolState::closed) == Message::CLOSED &&
+                static_cast<int>(ToolState::holding) == Message::HOLDING &&
+                static_cast<int>(ToolState::stuck) == Message::STUCK &&
+                static_cast<int>(ToolState::contradictory) == Message::CONTRADICTORY);
+  return [publisher](const ToolStatus& status, std::chrono::nanoseconds since) {
+    Message message;
+    message.state = static_cast<std::uint8_t>(status.state);
+    put_time(message.since, since);
+    message.reason = status.reason;
+    publisher.publish(message);
+  };
+}
+
 /// Serves coupler_driver/WaitFor by an action server of a ROS.
 template <class Server>
 class TypedWaitForServer : public WaitForServer {

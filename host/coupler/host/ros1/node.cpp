@@ -8,6 +8,7 @@
 #include <coupler_driver/Schedule.h>
 #include <coupler_driver/Scheduled.h>
 #include <coupler_driver/Status.h>
+#include <coupler_driver/ToolState.h>
 #include <coupler_driver/WaitForAction.h>
 #include <coupler_driver/Write.h>
 #include <ros/callback_queue.h>
@@ -49,20 +50,21 @@ struct Ros1Services {
 
 class Ros1ServiceThread : public TypedServiceThread<Ros1ServiceThread, Ros1Services> {
  public:
-  Ros1ServiceThread(ros::NodeHandle& handle, RemappingCheck& remappings)
-      : handle_(handle), remappings_(remappings) {}
+  Ros1ServiceThread(ros::NodeHandle& handle, RemappingCheck& remappings, std::size_t calls)
+      : handle_(handle), remappings_(remappings), calls_(calls) {}
   ~Ros1ServiceThread() override {
     queue_.disable();
-    if (thread_.joinable()) thread_.join();
+    for (std::thread& thread : threads_) thread.join();
   }
   Ros1ServiceThread(const Ros1ServiceThread&) = delete;
   Ros1ServiceThread& operator=(const Ros1ServiceThread&) = delete;
 
   void start() override {
-    thread_ = std::thread([this] {
-      while (queue_.isEnabled())
-        queue_.callOne(ros::WallDuration(3600));  // the wait: a call, or disable(), ends it at once
-    });
+    while (threads_.size() < calls_)
+      threads_.emplace_back([this] {
+        while (queue_.isEnabled())
+          queue_.callOne(ros::WallDuration(3600));  // the wait: a call, or disable(), ends it at once
+      });
   }
   void stop() override { queue_.disable(); }
 
@@ -84,7 +86,8 @@ class Ros1ServiceThread : public TypedServiceThread<Ros1ServiceThread, Ros1Servi
   RemappingCheck& remappings_;
   ros::CallbackQueue queue_;
   std::vector<ros::ServiceServer> servers_;
-  std::thread thread_;  // last: it uses the others
+  const std::size_t calls_;           ///< at a time
+  std::vector<std::thread> threads_;  // last: they use the others
 };
 
 // One function each: a macro of ROS unfolds to a page.
@@ -226,8 +229,14 @@ Node::PublishScheduled Ros1Node::advertise_scheduled(const std::string& topic, c
   return scheduled_with<Message>(handle_.advertise<Message>(topic, max_scheduled), map, wall);
 }
 
-std::unique_ptr<ServiceThread> Ros1Node::make_service_thread() {
-  return std::make_unique<Ros1ServiceThread>(handle_, remappings_);
+Node::PublishToolState Ros1Node::advertise_tool_state(const std::string& topic) {
+  using Message = coupler_driver::ToolState;
+  note_published<Message>(topic);
+  return tool_state_with<Message>(advertise_latched<Message>(handle_, topic));
+}
+
+std::unique_ptr<ServiceThread> Ros1Node::make_service_thread(std::size_t calls) {
+  return std::make_unique<Ros1ServiceThread>(handle_, remappings_, calls);
 }
 
 std::unique_ptr<WaitForServer> Ros1Node::offer_wait_for(const std::string& name,

@@ -36,7 +36,8 @@ class Ros1Node : public Node {
   PublishStatus advertise_status(const std::string& topic, const Map& map) override;
   PublishScheduled advertise_scheduled(const std::string& topic, const Map& map,
                                        const WallTime& wall) override;
-  std::unique_ptr<ServiceThread> make_service_thread() override;
+  PublishToolState advertise_tool_state(const std::string& topic) override;
+  std::unique_ptr<ServiceThread> make_service_thread(std::size_t calls) override;
   std::unique_ptr<WaitForServer> offer_wait_for(const std::string& name,
                                                 WaitForServer::Handler handler) override;
   void add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) override;

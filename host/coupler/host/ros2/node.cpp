@@ -6,6 +6,7 @@
 #include <coupler_driver/msg/points.hpp>
 #include <coupler_driver/msg/scheduled.hpp>
 #include <coupler_driver/msg/status.hpp>
+#include <coupler_driver/msg/tool_state.hpp>
 #include <coupler_driver/srv/cancel_scheduled.hpp>
 #include <coupler_driver/srv/list_scheduled.hpp>
 #include <coupler_driver/srv/read.hpp>
@@ -49,16 +50,17 @@ struct Ros2Services {
 
 class Ros2ServiceThread : public TypedServiceThread<Ros2ServiceThread, Ros2Services> {
  public:
-  Ros2ServiceThread(rcl::Node& node, RemappingCheck& remappings) : node_(node), remappings_(remappings) {}
+  Ros2ServiceThread(rcl::Node& node, RemappingCheck& remappings, std::size_t threads)
+      : node_(node), remappings_(remappings), most_(threads) {}
   ~Ros2ServiceThread() override {
     Ros2ServiceThread::stop();
-    if (thread_.joinable()) thread_.join();
+    for (std::thread& thread : threads_) thread.join();
   }
   Ros2ServiceThread(const Ros2ServiceThread&) = delete;
   Ros2ServiceThread& operator=(const Ros2ServiceThread&) = delete;
 
   void start() override {
-    thread_ = std::thread([this] { run(); });
+    while (threads_.size() < most_) threads_.emplace_back([this] { run(); });
   }
   void stop() override {
     {
@@ -66,7 +68,7 @@ class Ros2ServiceThread : public TypedServiceThread<Ros2ServiceThread, Ros2Servi
       stopped_ = true;
       calls_.clear();
     }
-    changed_.notify_one();
+    changed_.notify_all();
   }
 
   template <class S, class Function>
@@ -101,7 +103,8 @@ class Ros2ServiceThread : public TypedServiceThread<Ros2ServiceThread, Ros2Servi
   std::deque<std::function<void()>> calls_;
   bool stopped_ = false;
   std::vector<std::shared_ptr<void>> services_;
-  std::thread thread_;  // last: it uses the others
+  const std::size_t most_;            ///< threads
+  std::vector<std::thread> threads_;  // last: they use the others
 };
 
 }  // namespace
@@ -247,8 +250,15 @@ Node::PublishScheduled Ros2Node::advertise_scheduled(const std::string& topic, c
       wall);
 }
 
-std::unique_ptr<ServiceThread> Ros2Node::make_service_thread() {
-  return std::make_unique<Ros2ServiceThread>(node_, remappings_);
+Node::PublishToolState Ros2Node::advertise_tool_state(const std::string& topic) {
+  using Message = coupler_driver::msg::ToolState;
+  note_published<Message>(topic);
+  return tool_state_with<Message>(
+      rcl::Publisher<Message>(node_, topic, rcl::latched(), {{}, warn_subscriber(false)}));
+}
+
+std::unique_ptr<ServiceThread> Ros2Node::make_service_thread(std::size_t calls) {
+  return std::make_unique<Ros2ServiceThread>(node_, remappings_, calls);
 }
 
 std::unique_ptr<WaitForServer> Ros2Node::offer_wait_for(const std::string& name,

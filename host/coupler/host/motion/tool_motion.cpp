@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/motion/tool_motion.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace coupler::host {
+namespace {
+
+using How = ToolResult::How;
+
+constexpr std::array<ToolPart, 3> inputs{ToolPart::closed, ToolPart::opened, ToolPart::holds};
+
+ToolPart input_of(ToolEnd end) { return end == ToolEnd::closed ? ToolPart::closed : ToolPart::opened; }
+ToolPart output_of(ToolEnd end) { return end == ToolEnd::closed ? ToolPart::close : ToolPart::open; }
+ToolEnd other(ToolEnd end) { return end == ToolEnd::closed ? ToolEnd::open : ToolEnd::closed; }
+bool is_output(ToolPart part) { return part == ToolPart::close || part == ToolPart::open; }
+std::string_view word(bool on) { return on ? "on" : "off"; }
+
+}  // namespace
+
+std::string_view point_of(const Tool& tool, ToolPart part) {
+  switch (part) {
+    case ToolPart::close: return tool.close;
+    case ToolPart::open: return tool.open;
+    case ToolPart::closed: return tool.closed;
+    case ToolPart::opened: return tool.opened;
+    case ToolPart::holds: break;
+  }
+  return tool.holds;
+}
+
+/// The output that moves the tool, and how.
+ToolMotion::Command ToolMotion::motive() const {
+  if (has(output_of(goal_))) return {0, output_of(goal_), true};
+  return {0, output_of(other(goal_)), false};
+}
+
+void ToolMotion::begin(ToolEnd end, Time now) {
+  abort("replaced by a newer goal " + after(now), now);
+  goal_ = end;
+  since_ = now;
+  rest_.reset();
+  driven_ = {};
+  if (const ToolPart partner = output_of(other(end)); motive().on && has(partner))
+    send(partner, false, Phase::releasing);
+  else
+    drive();
+  update(now, {});
+}
+
+void ToolMotion::send(ToolPart output, bool on, Phase phase) {
+  phase_ = phase;
+  driven(output).reset();
+  last_ = {last_.number + 1, output, on};
+  is_given_ = false;
+}
+
+void ToolMotion::drive() {
+  const Command next = motive();
+  send(next.output, next.on, Phase::driving);
+}
+
+void ToolMotion::abort(const std::string& why, Time now) {
+  if (phase_ == Phase::idle) return;
+  if (phase_ != Phase::letting_go) is_given_ = true;  // an output that is to go off at the end does so
+  result_ = {How::aborted, why};
+  finish(now);
+}
+
+void ToolMotion::disturb(const std::string& why, Time now) {
+  driven_ = {};
+  rest_.reset();
+  abort(why, now);
+  update(now, {});
+}
+
+void ToolMotion::go_offline(Time now) {
+  for (Level& each : levels_) each.known = false;
+  disturb("the connection to the device was lost " + after(now), now);
+}
+
+bool ToolMotion::see(ToolPart part, bool on, const Stamp& stamp, Time now) {
+  Level& seen = level(part);
+  const bool is_news = !seen.known || seen.on != on;
+  if (is_news) {
+    seen = {true, on, stamp, stamp, false};
+    if (on && phase_ != Phase::moving && (part == ToolPart::closed || part == ToolPart::opened))
+      rest_.reset();
+  }
+  seen.last = stamp;
+  seen.asked = false;
+  if (is_output(part)) check_output(part, on, stamp, now);
+  look(now);
+  return is_news || is_status_new_ || !is_given_ || !results_.empty();
+}
+
+/// Somebody else has written it, who may have the tool's other output, too.
+void ToolMotion::check_output(ToolPart output, bool on, const Stamp& stamp, Time now) {
+  std::optional<Driven>& as = driven(output);
+  if (!as || as->on == on || stamp.at - stamp.uncertainty < as->since) return;
+  disturb(fmt::format("{} was switched {} by something else {}", name(output), word(on), after(now)), now);
+}
+
+void ToolMotion::lose(ToolPart part, Time now) {
+  level(part).known = false;
+  look(now);
+}
+
+void ToolMotion::on_written(std::uint64_t number, const std::string& failure, Time now) {
+  if (number != last_.number || phase_ == Phase::idle) return;  // of a goal that has ended
+  if (!failure.empty()) {
+    const std::string switched =
+        fmt::format("{} could not be switched {}: {}", name(last_.output), word(last_.on), failure);
+    return abort(phase_ == Phase::letting_go ? fmt::format("{}, but {}", result_.text, switched) : switched,
+                 now);
+  }
+  driven(last_.output) = Driven{last_.on, now};
+  if (phase_ == Phase::letting_go) return finish(now);
+  if (phase_ == Phase::releasing) return drive();
+  phase_ = Phase::moving;
+  since_ = now;
+  for (Level& each : levels_) each.asked = false;
+  look(now);
+}
+
+/// The value is not older than the motion.
+bool ToolMotion::is_since_driven(ToolPart input) const {
+  const Level& seen = level(input);
+  return seen.known && seen.last.at - seen.last.uncertainty >= since_;
+}
+bool ToolMotion::is_seen_on(ToolPart input) const {
+  const Level& seen = level(input);
+  return has(input) && is_since_driven(input) && seen.on && seen.last.at - seen.first.at >= tool_.settle;
+}
+bool ToolMotion::is_seen_off(ToolPart input) const {
+  return !has(input) || (is_since_driven(input) && !level(input).on);
+}
+
+bool ToolMotion::is_at_end(Time now) const {
+  const ToolPart input = input_of(goal_);
+  return has(input) ? is_seen_on(input) : now - since_ >= tool_.travel;
+}
+
+/// Decides whether the goal has ended, and updates the state.
+void ToolMotion::look(Time now) {
+  if (phase_ == Phase::moving) {
+    const bool has_left = is_seen_off(input_of(other(goal_)));
+    const bool may_hold = goal_ == ToolEnd::closed && has(ToolPart::holds);
+    const bool timed = !has(input_of(goal_));
+    const std::optional<ToolState> rest =
+        timed ? std::optional(goal_ == ToolEnd::closed ? ToolState::closed : ToolState::open) : std::nullopt;
+    if (has_left && may_hold && is_seen_on(ToolPart::holds))
+      return arrive(How::holds, "holds a part " + after(now), rest, now);
+    if (has_left && is_at_end(now) && (!may_hold || is_seen_off(ToolPart::holds))) {
+      if (may_hold && tool_.empty == OnEmpty::abort)
+        return arrive(How::aborted, "closed without a part " + after(now), rest, now);
+      return arrive(How::reached,
+                    fmt::format("{} {}{}", goal_ == ToolEnd::closed ? "closed" : "open", after(now),
+                                timed ? ", its travel time" : ""),
+                    rest, now);
+    }
+    if (now - since_ >= tool_.timeout)
+      return arrive(How::aborted, fmt::format("{} {}", why_stuck(), after(now)),
+                    is_contradictory() ? std::nullopt : std::optional(ToolState::stuck), now);
+  }
+  update(now, {});
+}
+
+/// "stuck: neither end", which a time follows.
+std::string ToolMotion::why_stuck() const {
+  for (const ToolPart input : inputs)
+    if (has(input) && !is_since_driven(input) && (input != ToolPart::holds || goal_ == ToolEnd::closed))
+      return fmt::format("stuck: no new value of {}", name(input));
+  if (is_contradictory()) return reason_of(ToolState::contradictory);
+  if (const ToolPart back = input_of(other(goal_)); is_on(back))
+    return fmt::format("stuck: {} is still on", name(back));
+  for (const ToolPart input : {input_of(goal_), ToolPart::holds})
+    if (is_on(input) && !is_seen_on(input) && (input != ToolPart::holds || goal_ == ToolEnd::closed))
+      return fmt::format("stuck: {} has not settled", name(input));
+  return "stuck: neither end";
+}
+
+/// The motion has ended.
+void ToolMotion::arrive(How how, std::string text, std::optional<ToolState> rest, Time now) {
+  const Command last = motive();
+  const bool lets_go = last.on && !tool_.hold;
+  if (how == How::aborted && !lets_go) text += fmt::format(" ({} is {})", name(last.output), word(last.on));
+  result_ = {how, std::move(text)};
+  rest_ = rest;
+  if (!lets_go) return finish(now);
+  send(last.output, false, Phase::letting_go);
+}
+
+void ToolMotion::finish(Time now) {
+  phase_ = Phase::idle;
+  update(now, result_.text);
+  results_.push_back(std::exchange(result_, {}));
+}
+
+ToolState ToolMotion::state() const {
+  if (phase_ != Phase::idle) return goal_ == ToolEnd::closed ? ToolState::closing : ToolState::opening;
+  if (rest_ == ToolState::stuck) return ToolState::stuck;
+  if (is_contradictory()) return ToolState::contradictory;
+  if (is_on(ToolPart::opened)) return ToolState::open;
+  if (is_on(ToolPart::holds) && rest_ != ToolState::open) return ToolState::holding;
+  if (is_on(ToolPart::closed)) return ToolState::closed;
+  return rest_.value_or(ToolState::unknown);
+}
+
+std::string ToolMotion::reason_of(ToolState state) const {
+  if (state == ToolState::contradictory)
+    return fmt::format("{} and {} are both on", name(ToolPart::closed), name(ToolPart::opened));
+  if (state != ToolState::unknown) return {};
+  for (const ToolPart input : inputs)
+    if (has(input) && !level(input).known) return fmt::format("no value of {}", name(input));
+  return has(ToolPart::closed) || has(ToolPart::opened) ? "no input says that it is at an end"
+                                                        : "it has no input that says where it is";
+}
+
+void ToolMotion::update(Time now, const std::string& reason) {
+  const ToolState is = state();
+  const bool stays = is == status_.state;
+  if (stays && reason.empty() && (is != ToolState::unknown || is_reason_of_goal_)) return;
+  std::string why = reason.empty() ? reason_of(is) : reason;
+  is_reason_of_goal_ = !reason.empty();
+  if (stays && why == status_.reason) return;
+  status_ = {is, stays ? status_.since : now, std::move(why)};
+  is_status_new_ = true;
+}
+
+Time ToolMotion::step(Time now) {
+  look(now);
+  if (phase_ != Phase::moving) return Time::max();
+  Time next = since_ + tool_.timeout;
+  if (!has(input_of(goal_)) && now < since_ + tool_.travel)
+    next = std::min(next, since_ + Duration(tool_.travel));
+  return std::min(next, ask(now));
+}
+
+/// A device that announces changes says no more of an input that stays as it is, or whose change may have
+/// been before the motion.
+Time ToolMotion::ask(Time now) {
+  Time next = Time::max();
+  for (const ToolPart input : inputs) {
+    Level& seen = level(input);
+    const Time due = is_on(input) ? seen.first.at + tool_.settle : Time::min();
+    if (!has(input) || seen.asked || (is_since_driven(input) && seen.last.at >= due)) continue;
+    if (is_since_driven(input) && now < due) {
+      next = std::min(next, due);
+    } else {
+      seen.asked = true;
+      asked_.push_back(input);
+    }
+  }
+  return next;
+}
+
+/// "after 212 ms"
+std::string ToolMotion::after(Time now) const {
+  return fmt::format("after {} ms", std::chrono::round<std::chrono::milliseconds>(now - since_).count());
+}
+
+std::optional<ToolMotion::Command> ToolMotion::take_command() {
+  if (std::exchange(is_given_, true)) return std::nullopt;
+  return last_;
+}
+std::vector<ToolPart> ToolMotion::take_asked() { return std::exchange(asked_, {}); }
+std::optional<ToolStatus> ToolMotion::take_status() {
+  if (!std::exchange(is_status_new_, false)) return std::nullopt;
+  return status_;
+}
+std::vector<ToolResult> ToolMotion::take_results() { return std::exchange(results_, {}); }
+
+}  // namespace coupler::host

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/motion/tools.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+namespace coupler::host {
+namespace {
+
+constexpr std::array<ToolPart, tool_parts> all_parts{ToolPart::close, ToolPart::open, ToolPart::closed,
+                                                     ToolPart::opened, ToolPart::holds};
+
+}  // namespace
+
+Tools::Tools(const Map& map, const ValueTable& values, Time now, Calls calls)
+    : map_(map), values_(values), calls_(std::move(calls)), places_(map.points.size()) {
+  for (std::size_t i = 0; i < map_.tools.size(); ++i) {
+    running_.push_back({ToolMotion(map_.tools[i], now), {}});
+    for (const ToolPart part : all_parts)
+      if (!point_of(map_.tools[i], part).empty()) places_[index_of(i, part)].push_back({i, part});
+  }
+}
+
+/// The loader has checked that the point is there.
+std::uint32_t Tools::index_of(std::size_t tool, ToolPart part) const {
+  return static_cast<std::uint32_t>(find(map_, point_of(map_.tools[tool], part)) - map_.points.data());
+}
+
+void Tools::begin(std::size_t tool, ToolEnd end, Time now, Done done) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (end_reason_.empty()) {
+      Running& running = running_[tool];
+      running.goals.push_back(std::move(done));
+      running.motion.begin(end, now);
+    }
+  }
+  if (done) return done({ToolResult::How::aborted, end_reason_});
+  calls_.wake();
+}
+
+template <class IsOne>
+void Tools::disturb_each(IsOne is_one, const std::string& why, Time now) {
+  {
+    const std::scoped_lock lock(writing_, mutex_);
+    for (std::size_t i = 0; i < running_.size(); ++i)
+      if (is_one(i)) running_[i].motion.disturb(why, now);
+  }
+  calls_.wake();
+}
+
+void Tools::disturb(std::uint32_t point, const std::string& why, Time now) {
+  const std::vector<Place>& places = places_[point];
+  const auto has_it = [&](std::size_t tool) {
+    return std::any_of(places.begin(), places.end(), [&](const Place& place) { return place.tool == tool; });
+  };
+  if (!places.empty()) disturb_each(has_it, why, now);
+}
+
+void Tools::disturb_all(const std::string& why, Time now) {
+  disturb_each([](std::size_t) { return true; }, why, now);
+}
+
+void Tools::end(const std::string& why, Time now) {
+  {
+    const std::lock_guard lock(mutex_);
+    end_reason_ = why;
+  }
+  disturb_all(why, now);
+}
+
+Time Tools::step(Time now) {
+  Work work;
+  Time next = Time::max();
+  {
+    const std::lock_guard writing(writing_);
+    {
+      const std::lock_guard lock(mutex_);
+      take_results(now);
+      for (std::size_t i = 0; i < running_.size(); ++i) {
+        next = std::min(next, running_[i].motion.step(now));
+        take(i, now, work);
+      }
+    }
+    for (const Write& write : work.writes) calls_.write(write);
+  }
+  for (const std::uint32_t point : work.asked) calls_.ask(point);
+  for (const auto& [tool, status] : work.shown) calls_.show(tool, status);
+  for (const auto& [done, result] : work.results) done(result);
+  return next;
+}
+
+/// Tells the tools what became of their writes.
+void Tools::take_results(Time now) {
+  for (auto each = sent_.begin(); each != sent_.end();) {
+    const auto sent = each++;
+    if (!sent->failure) continue;
+    running_[sent->tool].motion.on_written(sent->number, *sent->failure, now);
+    sent_.erase(sent);
+  }
+}
+
+void Tools::take(std::size_t tool, Time now, Work& work) {
+  Running& running = running_[tool];
+  if (const auto command = running.motion.take_command()) {
+    Write write = make_bit_write(map_, index_of(tool, command->output), command->on);
+    write.ordered = true;
+    write.until = now + map_.tools[tool].timeout;
+    write.listener = &sent_.emplace_back(*this, tool, *command);
+    work.writes.push_back(write);
+  }
+  for (const ToolPart input : running.motion.take_asked()) work.asked.push_back(index_of(tool, input));
+  if (const auto status = running.motion.take_status()) work.shown.emplace_back(tool, *status);
+  for (ToolResult& result : running.motion.take_results()) {
+    work.results.emplace_back(std::move(running.goals.front()), std::move(result));
+    running.goals.erase(running.goals.begin());
+  }
+}
+
+void Tools::on_result(Sent& sent, const WriteResult& result) {
+  std::string failure = result.outcome == WriteResult::Outcome::ok ? std::string() : to_string(result);
+  {
+    const std::lock_guard lock(mutex_);
+    sent.failure = std::move(failure);
+  }
+  calls_.wake();
+}
+
+/// change(motion, part, point) returns whether step() is to be called.
+template <class Change>
+void Tools::each_place(Span<const std::uint32_t> points, Change change) {
+  bool is_news = false;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const std::uint32_t point : points)
+      for (const auto& [tool, part] : places_[point]) is_news |= change(running_[tool].motion, part, point);
+  }
+  if (is_news) calls_.wake();
+}
+
+void Tools::on_values(Span<const std::uint32_t> points, Time now) {
+  each_place(points, [&](ToolMotion& motion, ToolPart part, std::uint32_t point) {
+    return motion.see(part, values_.registers(point)[0] != 0, values_.stamp(point), now);
+  });
+}
+
+void Tools::on_no_values(Span<const std::uint32_t> points, Time now) {
+  each_place(points, [&](ToolMotion& motion, ToolPart part, std::uint32_t /*point*/) {
+    motion.lose(part, now);
+    return true;
+  });
+}
+
+void Tools::on_gap(Time now) {
+  {
+    const std::lock_guard lock(mutex_);
+    for (Running& running : running_)
+      for (const ToolPart part : all_parts) running.motion.lose(part, now);
+  }
+  calls_.wake();
+}
+
+void Tools::on_online(bool online, Time now) {
+  if (online) return;
+  {
+    const std::lock_guard lock(mutex_);
+    for (Running& running : running_) running.motion.go_offline(now);
+  }
+  calls_.wake();
+}
+
+}  // namespace coupler::host

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <list>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coupler/base/span.hpp"
+#include "coupler/host/core/value_table.hpp"
+#include "coupler/host/core/write.hpp"
+#include "coupler/host/motion/tool_motion.hpp"
+
+namespace coupler::host {
+
+/// The tools of a device. The device's thread says what it has read, and another thread, in which commands
+/// and results are given, calls step().
+class Tools {
+ public:
+  using Done = std::function<void(const ToolResult&)>;
+  /// The functions that it calls. None of them may wait for anything.
+  struct Calls {
+    std::function<void(const Write&)> write;       ///< from step(); the write has a listener
+    std::function<void(std::uint32_t point)> ask;  ///< makes the device read a point soon; from step()
+    std::function<void()> wake;                    ///< makes another thread call step() soon
+    std::function<void(std::size_t tool, const ToolStatus&)>
+        show;  ///< its status is another one; from step()
+  };
+
+  /// The storage of `map`, and the table, must outlive it. Every write must have its result before it is
+  /// destroyed.
+  Tools(const Map& map, const ValueTable& values, Time now, Calls calls);
+
+  // Any thread may make these calls.
+
+  /// Returns whether a tool has the point.
+  bool has(std::uint32_t point) const { return !places_[point].empty(); }
+  /// Begins a goal of a tool. step() calls `done` exactly once.
+  void begin(std::size_t tool, ToolEnd end, Time now, Done done);
+  /// Somebody else writes the point: its tools do nothing more with it.
+  void disturb(std::uint32_t point, const std::string& why, Time now);
+  /// The same for all tools. Once it has returned, no write is made for an earlier goal.
+  void disturb_all(const std::string& why, Time now);
+  /// Aborts all goals, also those to come.
+  void end(const std::string& why, Time now);
+
+  /// Decides, and does what follows. Returns the time at which it is to be called again.
+  Time step(Time now);
+
+  // The device's thread makes these calls, as those of Sink.
+
+  void on_values(Span<const std::uint32_t> points, Time now);
+  void on_no_values(Span<const std::uint32_t> points, Time now);
+  void on_gap(Time now);
+  void on_online(bool online, Time now);
+
+ private:
+  /// One of the points of a tool.
+  struct Place {
+    std::size_t tool;
+    ToolPart part;
+  };
+  /// A command on its way.
+  struct Sent : WriteListener {
+    Sent(Tools& owner, std::size_t of_tool, const ToolMotion::Command& command)
+        : tools(owner), tool(of_tool), number(command.number) {}
+    void on_result(const WriteResult& result) override { tools.on_result(*this, result); }
+    Tools& tools;
+    std::size_t tool;
+    std::uint64_t number;
+    std::optional<std::string> failure;  ///< none: it has no result yet; empty: it was carried out
+  };
+  struct Running {
+    ToolMotion motion;
+    std::vector<Done> goals;  ///< without a result, oldest first
+  };
+  /// What is to be done without mutex_.
+  struct Work {
+    std::vector<Write> writes;
+    std::vector<std::uint32_t> asked;
+    std::vector<std::pair<std::size_t, ToolStatus>> shown;
+    std::vector<std::pair<Done, ToolResult>> results;
+  };
+
+  std::uint32_t index_of(std::size_t tool, ToolPart part) const;
+  void on_result(Sent& sent, const WriteResult& result);
+  void take_results(Time now);
+  void take(std::size_t tool, Time now, Work& work);
+  template <class IsOne>
+  void disturb_each(IsOne is_one, const std::string& why, Time now);
+  template <class Change>
+  void each_place(Span<const std::uint32_t> points, Change change);
+
+  const Map map_;
+  const ValueTable& values_;
+  const Calls calls_;
+  std::vector<std::vector<Place>> places_;  ///< by point
+
+  std::mutex writing_;  ///< held from taking a command until its write is made; before mutex_
+  std::mutex mutex_;
+  std::vector<Running> running_;  ///< by tool
+  std::list<Sent> sent_;
+  std::string end_reason_;  ///< empty: it has not ended
+};
+
+}  // namespace coupler::host

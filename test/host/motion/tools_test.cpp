@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/host/motion/tools.hpp"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "test/fakes/map_builder.hpp"
+#include "test/host/motion/sample_tools.hpp"
+
+namespace coupler::host {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+constexpr Tool tools_of_map[] = {clamp(), cup()};
+
+MapPtr map_with_tools() {
+  fakes::MapBuilder builder;
+  builder.coil("valve_close", 0).coil("valve_open", 1).input("sensor_closed", 0).input("sensor_open", 1);
+  builder.holding("vacuum", 0, [] {
+    codec::Format bit;
+    bit.type = codec::Type::BOOL;
+    bit.bit = 3;
+    return bit;
+  }());
+  builder.head().tools = tools_of_map;
+  return builder.build();
+}
+
+/// Results of writes come when acknowledge() is called.
+struct ToolsTest : testing::Test {
+  ToolsTest() {
+    values.begin();
+    values.online(true);
+    tools.on_online(true, now());
+  }
+
+  static Time now() { return std::chrono::steady_clock::now(); }
+  std::uint32_t index(std::string_view name) const {
+    return static_cast<std::uint32_t>(find(map->map(), name) - map->map().points.data());
+  }
+  void read(Table table, std::uint16_t address, std::string_view name, bool on) {
+    const ReadSpan span{table, modbus::Range::of(address, 1), {index(name)}};
+    const std::uint16_t bit = on ? 1 : 0;
+    values.store(span, {&bit, 1}, {now(), {}}, now());
+    const std::uint32_t point = index(name);
+    tools.on_values({&point, 1}, now());
+  }
+  void begin(std::size_t tool, ToolEnd end) {
+    tools.begin(tool, end, now(), [this](const ToolResult& result) { results.push_back(result.text); });
+  }
+  /// Carries out what has been written.
+  void acknowledge() {
+    while (!writes.empty()) {
+      const Write write = writes.front();
+      writes.erase(writes.begin());
+      write.listener->on_result({WriteResult::Outcome::ok});
+      tools.step(now());
+    }
+  }
+
+  MapPtr map = map_with_tools();
+  ValueTable values{map->map()};
+  std::vector<Write> writes;
+  std::vector<std::string> asked;
+  std::vector<std::pair<std::size_t, ToolState>> shown;
+  std::vector<std::string> results;
+  int woken = 0;
+  Tools tools{
+      map->map(),
+      values,
+      now(),
+      {[this](const Write& write) { writes.push_back(write); },
+       [this](std::uint32_t point) { asked.emplace_back(map->map().points[point].name); },
+       [this] { ++woken; },
+       [this](std::size_t tool, const ToolStatus& status) { shown.emplace_back(tool, status.state); }}};
+};
+
+TEST_F(ToolsTest, A_goal_writes_its_outputs_and_asks_for_its_inputs) {
+  begin(0, ToolEnd::closed);
+  EXPECT_GT(woken, 0);
+  tools.step(now());
+  ASSERT_EQ(writes.size(), 1U);
+  EXPECT_EQ(writes[0].point, index("valve_open"));
+  EXPECT_FALSE(writes[0].bit(0));
+  EXPECT_TRUE(writes[0].ordered);
+  acknowledge();
+  EXPECT_THAT(asked, ElementsAre("sensor_closed", "sensor_open"));
+  read(Table::discrete_inputs, 1, "sensor_open", false);
+  read(Table::discrete_inputs, 0, "sensor_closed", true);
+  tools.step(now());
+  EXPECT_THAT(results, ElementsAre(StartsWith("closed after ")));
+}
+
+TEST_F(ToolsTest, An_output_may_be_a_bit_of_a_register) {
+  begin(1, ToolEnd::closed);
+  tools.step(now());
+  ASSERT_EQ(writes.size(), 1U);
+  EXPECT_EQ(writes[0].point, index("vacuum"));
+  EXPECT_EQ(writes[0].registers[0], 1U << 3U);
+}
+
+TEST_F(ToolsTest, The_result_of_a_write_may_come_while_it_is_made) {
+  Tools at_once(map->map(), values, now(),
+                {[](const Write& write) { write.listener->on_result({WriteResult::Outcome::ok}); },
+                 [](std::uint32_t) {}, [] {}, [](std::size_t, const ToolStatus&) {}});
+  at_once.on_online(true, now());
+  std::vector<std::string> said;
+  at_once.begin(1, ToolEnd::closed, now(), [&](const ToolResult& result) { said.push_back(result.text); });
+  const Time next = at_once.step(now());
+  at_once.step(at_once.step(now()));
+  at_once.step(now() + milliseconds(20));
+  EXPECT_EQ(next, Time::max()) << "it is woken";
+  EXPECT_THAT(said, ElementsAre(testing::EndsWith(" ms, its travel time")));
+}
+
+TEST_F(ToolsTest, A_write_that_fails_says_why) {
+  begin(1, ToolEnd::closed);
+  tools.step(now());
+  writes[0].listener->on_result({WriteResult::Outcome::lost, std::nullopt, "no reply"});
+  tools.step(now());
+  EXPECT_THAT(results, ElementsAre("vacuum could not be switched on: lost: no reply"));
+}
+
+TEST_F(ToolsTest, Each_goal_has_its_own_result) {
+  begin(0, ToolEnd::closed);
+  begin(0, ToolEnd::open);
+  begin(1, ToolEnd::open);
+  tools.step(now());
+  EXPECT_THAT(results, ElementsAre(StartsWith("replaced by a newer goal")));
+  tools.disturb_all("safe values were requested", now());
+  tools.step(now());
+  EXPECT_EQ(results.size(), 3U);
+}
+
+TEST_F(ToolsTest, A_device_that_goes_offline_ends_all) {
+  begin(0, ToolEnd::closed);
+  tools.on_online(false, now());
+  tools.step(now());
+  EXPECT_THAT(results, ElementsAre(StartsWith("the connection to the device was lost")));
+  EXPECT_THAT(writes, IsEmpty());
+}
+
+TEST_F(ToolsTest, A_write_by_somebody_else_ends_the_goal_of_that_tool) {
+  begin(0, ToolEnd::closed);
+  begin(1, ToolEnd::closed);
+  tools.disturb(index("valve_open"), "valve_open was written directly", now());
+  tools.step(now());
+  EXPECT_THAT(results, ElementsAre("valve_open was written directly"));
+  ASSERT_EQ(writes.size(), 1U);
+  EXPECT_EQ(writes[0].point, index("vacuum"));
+}
+
+TEST_F(ToolsTest, After_the_end_a_goal_is_aborted) {
+  tools.end("the driver ends", now());
+  begin(0, ToolEnd::closed);
+  tools.step(now());
+  EXPECT_THAT(results, ElementsAre("the driver ends"));
+  EXPECT_THAT(writes, IsEmpty());
+}
+
+TEST_F(ToolsTest, A_state_is_shown_at_first_and_when_it_has_changed) {
+  tools.step(now());
+  EXPECT_THAT(shown, ElementsAre(std::pair(0U, ToolState::unknown), std::pair(1U, ToolState::unknown)));
+  shown.clear();
+  read(Table::discrete_inputs, 0, "sensor_closed", true);
+  tools.step(now());
+  EXPECT_THAT(shown, ElementsAre(std::pair(0U, ToolState::closed)));
+}
+
+TEST_F(ToolsTest, A_value_that_says_nothing_new_wakes_nobody) {
+  read(Table::discrete_inputs, 0, "sensor_closed", true);
+  tools.step(now());
+  woken = 0;
+  read(Table::discrete_inputs, 0, "sensor_closed", true);
+  EXPECT_EQ(woken, 0);
+}
+
+}  // namespace
+}  // namespace coupler::host
