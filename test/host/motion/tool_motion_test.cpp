@@ -336,7 +336,7 @@ TEST_F(ToolMotionTest, What_is_said_of_a_tool_that_is_stuck_does_not_speak_of_wh
   EXPECT_EQ(text(), "stuck: neither end after 800 ms (valve_open is on)");
 }
 
-TEST_F(ToolMotionTest, An_output_that_is_to_go_off_at_the_end_goes_off_whatever_comes) {
+TEST_F(ToolMotionTest, After_it_was_disturbed_nothing_more_is_driven) {
   Tool tool = clamp();
   tool.hold = false;
   use(tool);
@@ -345,7 +345,49 @@ TEST_F(ToolMotionTest, An_output_that_is_to_go_off_at_the_end_goes_off_whatever_
   see(20, P::closed, true);
   motion->disturb("safe values were requested", at(20));
   EXPECT_EQ(text(), "safe values were requested");
-  EXPECT_EQ(command(), "close off");
+  EXPECT_EQ(command(), "");
+}
+
+TEST_F(ToolMotionTest, A_part_may_be_seen_by_the_reading_that_sees_the_end) {
+  Tool tool = clamp();
+  tool.holds = "part_present";
+  use(tool);
+  drive(ToolEnd::closed, 0);
+  see(10, P::opened, false);
+  see(10, P::holds, false);
+  see(200, P::closed, true);
+  EXPECT_EQ(text(), "") << "the part comes next";
+  see(200, P::holds, true);
+  EXPECT_EQ(text(), "holds a part after 200 ms");
+}
+
+TEST_F(ToolMotionTest, A_part_may_be_seen_until_the_travel_time_has_passed) {
+  Tool tool = cup();
+  tool.holds = "vacuum_reached";
+  use(tool);
+  drive(ToolEnd::closed, 0);
+  see(5, P::holds, false);
+  EXPECT_EQ(motion->step(at(10)), at(300));
+  motion->step(at(300));
+  EXPECT_EQ(text(), "") << "nobody knows yet";
+  EXPECT_THAT(motion->take_asked(), ElementsAre(P::holds));
+  see(302, P::holds, true);
+  EXPECT_EQ(text(), "holds a part after 302 ms");
+}
+
+TEST_F(ToolMotionTest, A_tool_that_was_stuck_is_so_until_its_inputs_say_that_it_is_there) {
+  Tool tool = cup();
+  tool.holds = "vacuum_reached";
+  tool.settle = milliseconds(30);
+  tool.timeout = milliseconds(320);
+  use(tool);
+  drive(ToolEnd::closed, 0);
+  see(310, P::holds, true);
+  motion->step(at(320));
+  EXPECT_EQ(text(), "stuck: vacuum_reached has not settled after 320 ms (vacuum is on)");
+  EXPECT_EQ(state(), ToolState::stuck);
+  see(400, P::holds, true);
+  EXPECT_EQ(state(), ToolState::holding);
 }
 
 TEST_F(ToolMotionTest, Before_the_first_goal_its_inputs_say_where_it_is) {

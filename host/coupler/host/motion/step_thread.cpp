@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/motion/step_thread.hpp"
 
+#include <exception>
+
 namespace coupler::host {
 
 void StepThread::start() {
@@ -41,7 +43,11 @@ void StepThread::run() {
     woken_ = false;
     is_last = ended_;
     lock.unlock();
-    next = step_(std::chrono::steady_clock::now());
+    try {
+      next = step_(std::chrono::steady_clock::now());
+    } catch (...) {
+      std::terminate();  // from here, so that the locks are free with which the outputs are made safe
+    }
     lock.lock();
   }
 }

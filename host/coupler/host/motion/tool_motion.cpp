@@ -66,7 +66,7 @@ void ToolMotion::drive() {
 
 void ToolMotion::abort(const std::string& why, Time now) {
   if (phase_ == Phase::idle) return;
-  if (phase_ != Phase::letting_go) is_given_ = true;  // an output that is to go off at the end does so
+  is_given_ = true;
   result_ = {How::aborted, why};
   finish(now);
 }
@@ -93,6 +93,7 @@ bool ToolMotion::see(ToolPart part, bool on, const Stamp& stamp, Time now) {
   }
   seen.last = stamp;
   seen.asked = false;
+  if (rest_ == ToolState::stuck && phase_ == Phase::idle && is_there()) rest_.reset();
   if (is_output(part)) check_output(part, on, stamp, now);
   look(now);
   return is_news || is_status_new_ || !is_given_ || !results_.empty();
@@ -145,6 +146,24 @@ bool ToolMotion::is_at_end(Time now) const {
   return has(input) ? is_seen_on(input) : now - since_ >= tool_.travel;
 }
 
+/// The time at which it is at the end of the goal, as far as is known; Time::max() if it is not.
+Time ToolMotion::end_at() const {
+  const ToolPart input = input_of(goal_);
+  if (!has(input)) return since_ + Duration(tool_.travel);
+  return is_on(input) ? level(input).first.at + Duration(tool_.settle) : Time::max();
+}
+
+/// A part may be seen as late as the end is reached, and by the same reading.
+bool ToolMotion::is_without_part() const {
+  return is_seen_off(ToolPart::holds) && level(ToolPart::holds).last.at >= end_at();
+}
+
+/// Its inputs say that it is where the goal has led to.
+bool ToolMotion::is_there() const {
+  if (is_on(input_of(other(goal_)))) return false;
+  return is_on(input_of(goal_)) || (goal_ == ToolEnd::closed && is_on(ToolPart::holds));
+}
+
 /// Decides whether the goal has ended, and updates the state.
 void ToolMotion::look(Time now) {
   if (phase_ == Phase::moving) {
@@ -155,7 +174,7 @@ void ToolMotion::look(Time now) {
         timed ? std::optional(goal_ == ToolEnd::closed ? ToolState::closed : ToolState::open) : std::nullopt;
     if (has_left && may_hold && is_seen_on(ToolPart::holds))
       return arrive(How::holds, "holds a part " + after(now), rest, now);
-    if (has_left && is_at_end(now) && (!may_hold || is_seen_off(ToolPart::holds))) {
+    if (has_left && is_at_end(now) && (!may_hold || is_without_part())) {
       if (may_hold && tool_.empty == OnEmpty::abort)
         return arrive(How::aborted, "closed without a part " + after(now), rest, now);
       return arrive(How::reached,
@@ -197,8 +216,8 @@ void ToolMotion::arrive(How how, std::string text, std::optional<ToolState> rest
 
 void ToolMotion::finish(Time now) {
   phase_ = Phase::idle;
-  update(now, result_.text);
   results_.push_back(std::exchange(result_, {}));
+  update(now, results_.back().text);
 }
 
 ToolState ToolMotion::state() const {
@@ -247,7 +266,10 @@ Time ToolMotion::ask(Time now) {
   Time next = Time::max();
   for (const ToolPart input : inputs) {
     Level& seen = level(input);
-    const Time due = is_on(input) ? seen.first.at + tool_.settle : Time::min();
+    const bool shows_part = input == ToolPart::holds && goal_ == ToolEnd::closed;
+    const Time due = is_on(input)                            ? seen.first.at + Duration(tool_.settle)
+                     : shows_part && end_at() != Time::max() ? end_at()
+                                                             : Time::min();
     if (!has(input) || seen.asked || (is_since_driven(input) && seen.last.at >= due)) continue;
     if (is_since_driven(input) && now < due) {
       next = std::min(next, due);

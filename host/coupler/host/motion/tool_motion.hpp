@@ -126,6 +126,9 @@ class ToolMotion {
   void check_output(ToolPart output, bool on, const Stamp& stamp, Time now);
   void look(Time now);
   bool is_at_end(Time now) const;
+  Time end_at() const;
+  bool is_without_part() const;
+  bool is_there() const;
   std::string why_stuck() const;
   void arrive(ToolResult::How how, std::string text, std::optional<ToolState> rest, Time now);
   void finish(Time now);

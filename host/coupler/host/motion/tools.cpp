@@ -27,16 +27,17 @@ std::uint32_t Tools::index_of(std::size_t tool, ToolPart part) const {
   return static_cast<std::uint32_t>(find(map_, point_of(map_.tools[tool], part)) - map_.points.data());
 }
 
-void Tools::begin(std::size_t tool, ToolEnd end, Time now, Done done) {
+void Tools::begin(std::size_t tool, ToolEnd end, Time now, const Done& done) {
+  std::string ended;
   {
     const std::lock_guard lock(mutex_);
-    if (end_reason_.empty()) {
-      Running& running = running_[tool];
-      running.goals.push_back(std::move(done));
-      running.motion.begin(end, now);
+    ended = end_reason_;
+    if (ended.empty()) {
+      running_[tool].goals.push_back(done);
+      running_[tool].motion.begin(end, now);
     }
   }
-  if (done) return done({ToolResult::How::aborted, end_reason_});
+  if (!ended.empty()) return done({ToolResult::How::aborted, ended});
   calls_.wake();
 }
 
@@ -77,7 +78,7 @@ Time Tools::step(Time now) {
     const std::lock_guard writing(writing_);
     {
       const std::lock_guard lock(mutex_);
-      take_results(now);
+      take_results();
       for (std::size_t i = 0; i < running_.size(); ++i) {
         next = std::min(next, running_[i].motion.step(now));
         take(i, now, work);
@@ -92,11 +93,11 @@ Time Tools::step(Time now) {
 }
 
 /// Tells the tools what became of their writes.
-void Tools::take_results(Time now) {
+void Tools::take_results() {
   for (auto each = sent_.begin(); each != sent_.end();) {
     const auto sent = each++;
     if (!sent->failure) continue;
-    running_[sent->tool].motion.on_written(sent->number, *sent->failure, now);
+    running_[sent->tool].motion.on_written(sent->number, *sent->failure, sent->at);
     sent_.erase(sent);
   }
 }
@@ -119,12 +120,11 @@ void Tools::take(std::size_t tool, Time now, Work& work) {
 }
 
 void Tools::on_result(Sent& sent, const WriteResult& result) {
-  std::string failure = result.outcome == WriteResult::Outcome::ok ? std::string() : to_string(result);
-  {
-    const std::lock_guard lock(mutex_);
-    sent.failure = std::move(failure);
-  }
+  const std::lock_guard lock(mutex_);
+  sent.at = std::chrono::steady_clock::now();
+  sent.failure = result.outcome == WriteResult::Outcome::ok ? "" : "not written";
   calls_.wake();
+  if (!sent.failure->empty()) sent.failure = to_string(result);  // last: there may be no memory for it
 }
 
 /// change(motion, part, point) returns whether step() is to be called.

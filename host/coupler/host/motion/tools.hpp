@@ -41,7 +41,7 @@ class Tools {
   /// Returns whether a tool has the point.
   bool has(std::uint32_t point) const { return !places_[point].empty(); }
   /// Begins a goal of a tool. step() calls `done` exactly once.
-  void begin(std::size_t tool, ToolEnd end, Time now, Done done);
+  void begin(std::size_t tool, ToolEnd end, Time now, const Done& done);
   /// Somebody else writes the point: its tools do nothing more with it.
   void disturb(std::uint32_t point, const std::string& why, Time now);
   /// The same for all tools. Once it has returned, no write is made for an earlier goal.
@@ -73,6 +73,7 @@ class Tools {
     Tools& tools;
     std::size_t tool;
     std::uint64_t number;
+    Time at{};                           ///< when it got its result
     std::optional<std::string> failure;  ///< none: it has no result yet; empty: it was carried out
   };
   struct Running {
@@ -89,7 +90,7 @@ class Tools {
 
   std::uint32_t index_of(std::size_t tool, ToolPart part) const;
   void on_result(Sent& sent, const WriteResult& result);
-  void take_results(Time now);
+  void take_results();
   void take(std::size_t tool, Time now, Work& work);
   template <class IsOne>
   void disturb_each(IsOne is_one, const std::string& why, Time now);

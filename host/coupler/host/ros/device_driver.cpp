@@ -267,6 +267,8 @@ void DeviceDriver::on_online(bool online) {
 }
 
 void DeviceDriver::on_scheduled(const ScheduledOutcome& outcome) {
+  if (outcome.result == ScheduledOutcome::Result::done)
+    for (const auto& follower : followers_) follower->write_comes(outcome.point);
   measure_wall();
   publish_scheduled_(outcome);
 }
@@ -323,10 +325,7 @@ std::future<CallAnswer> DeviceDriver::make_safe() {
 
 std::future<ScheduleAnswer> DeviceDriver::schedule(const ScheduledWrite& what) {
   const std::string why = why_not_direct(map_, map_.points[what.write.point]);
-  if (why.empty()) {
-    for (const auto& follower : followers_) follower->write_comes(what.write.point);
-    return driven().schedule(what);
-  }
+  if (why.empty()) return driven().schedule(what);
   std::promise<ScheduleAnswer> refused;
   refused.set_value({0, "refused: " + why});
   return refused.get_future();

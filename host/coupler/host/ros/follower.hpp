@@ -19,7 +19,7 @@ class Follower {
   virtual void wanted(std::uint32_t /*point*/) {}
   /// The device's services are there, and its thread runs.
   virtual void begin() {}
-  /// Somebody writes the point. It must not wait for anything.
+  /// Somebody writes the point, or has done so. It must not wait for anything.
   virtual void write_comes(std::uint32_t /*point*/) {}
   /// Safe values were requested. It must not wait for anything.
   virtual void safe_comes() {}
