@@ -24,7 +24,7 @@ tl::expected<const Point*, std::string> point_named(const Map& map, std::string_
 }
 
 tl::expected<const Point*, std::string> read_point_named(const Map& map, std::string_view name) {
-  const auto point = point_named(map, name);
+  auto point = point_named(map, name);
   if (!point) return point;
   if (const auto reason = plan::why_not_read(map, **point))
     return tl::unexpected(fmt::format("{} is never read: it is {}", (*point)->name, plan::words_of(*reason)));

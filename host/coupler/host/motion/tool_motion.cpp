@@ -164,29 +164,33 @@ bool ToolMotion::is_there() const {
   return is_on(input_of(goal_)) || (goal_ == ToolEnd::closed && is_on(ToolPart::holds));
 }
 
+/// Returns whether the motion has ended, with which arrive() has dealt then.
+bool ToolMotion::ends(Time now) {
+  const bool has_left = is_seen_off(input_of(other(goal_)));
+  const bool may_hold = goal_ == ToolEnd::closed && has(ToolPart::holds);
+  const bool timed = !has(input_of(goal_));
+  const std::optional<ToolState> rest =
+      timed ? std::optional(goal_ == ToolEnd::closed ? ToolState::closed : ToolState::open) : std::nullopt;
+  if (has_left && may_hold && is_seen_on(ToolPart::holds))
+    arrive(How::holds, "holds a part " + after(now), rest, now);
+  else if (has_left && is_at_end(now) && may_hold && is_without_part() && tool_.empty == OnEmpty::abort)
+    arrive(How::aborted, "closed without a part " + after(now), rest, now);
+  else if (has_left && is_at_end(now) && (!may_hold || is_without_part()))
+    arrive(How::reached,
+           fmt::format("{} {}{}", goal_ == ToolEnd::closed ? "closed" : "open", after(now),
+                       timed ? ", its travel time" : ""),
+           rest, now);
+  else if (now - since_ >= tool_.timeout)
+    arrive(How::aborted, fmt::format("{} {}", why_stuck(), after(now)),
+           is_contradictory() ? std::nullopt : std::optional(ToolState::stuck), now);
+  else
+    return false;
+  return true;
+}
+
 /// Decides whether the goal has ended, and updates the state.
 void ToolMotion::look(Time now) {
-  if (phase_ == Phase::moving) {
-    const bool has_left = is_seen_off(input_of(other(goal_)));
-    const bool may_hold = goal_ == ToolEnd::closed && has(ToolPart::holds);
-    const bool timed = !has(input_of(goal_));
-    const std::optional<ToolState> rest =
-        timed ? std::optional(goal_ == ToolEnd::closed ? ToolState::closed : ToolState::open) : std::nullopt;
-    if (has_left && may_hold && is_seen_on(ToolPart::holds))
-      return arrive(How::holds, "holds a part " + after(now), rest, now);
-    if (has_left && is_at_end(now) && (!may_hold || is_without_part())) {
-      if (may_hold && tool_.empty == OnEmpty::abort)
-        return arrive(How::aborted, "closed without a part " + after(now), rest, now);
-      return arrive(How::reached,
-                    fmt::format("{} {}{}", goal_ == ToolEnd::closed ? "closed" : "open", after(now),
-                                timed ? ", its travel time" : ""),
-                    rest, now);
-    }
-    if (now - since_ >= tool_.timeout)
-      return arrive(How::aborted, fmt::format("{} {}", why_stuck(), after(now)),
-                    is_contradictory() ? std::nullopt : std::optional(ToolState::stuck), now);
-  }
-  update(now, {});
+  if (phase_ != Phase::moving || !ends(now)) update(now, {});
 }
 
 /// "stuck: neither end", which a time follows.

@@ -124,6 +124,7 @@ class ToolMotion {
   void send(ToolPart output, bool on, Phase phase);
   void drive();
   void check_output(ToolPart output, bool on, const Stamp& stamp, Time now);
+  bool ends(Time now);
   void look(Time now);
   bool is_at_end(Time now) const;
   Time end_at() const;
