@@ -11,7 +11,7 @@
 namespace coupler::docs {
 namespace {
 
-/// What moves it: its own output on, or the other one off.
+/// Returns what moves it: its own output on, or the other one off.
 std::string moved_by(std::string_view output, std::string_view other) {
   return output.empty() ? fmt::format("{} off", other) : fmt::format("{} on", output);
 }
@@ -40,8 +40,10 @@ ToolDescription describe(const Tool& tool) {
   out.opens = moved_by(tool.open, tool.close);
   out.closed = arrival(tool.closed, tool);
   out.opened = arrival(tool.opened, tool);
-  if (!tool.holds.empty()) out.holds = seen_by(tool.holds, tool);
-  if (!tool.holds.empty()) out.empty = tool.empty == OnEmpty::ok ? "closed" : "fails";
+  if (!tool.holds.empty()) {
+    out.holds = seen_by(tool.holds, tool);
+    out.empty = tool.empty == OnEmpty::ok ? "closed" : "fails";
+  }
   out.timeout = "after " + words(tool.timeout);
   out.outputs = outputs(tool);
   return out;

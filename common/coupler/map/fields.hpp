@@ -19,6 +19,7 @@ namespace coupler {
 
 /// A value as a map writes it.
 inline std::string written(std::string_view text) { return std::string(text); }
+inline std::string written(bool value) { return value ? "true" : "false"; }
 inline std::string written(std::chrono::milliseconds duration) {
   return fmt::format("{}ms", duration.count());
 }

@@ -118,7 +118,7 @@ constexpr Enumeration<Verify, 3> enumeration(Verify) {
   return {"Verify", {{Verify::require, "require"}, {Verify::warn, "warn"}, {Verify::off, "off"}}};
 }
 
-/// What a tool does that is closed where `holds` says that nothing is held.
+/// The result of closing a tool that holds nothing, as far as `holds` says.
 enum class OnEmpty : std::uint8_t {
   abort,  ///< its goal fails
   ok      ///< its goal succeeds

@@ -190,6 +190,11 @@ constexpr bool is_hooked_output(const Point& point) { return is_writable(point) 
 /// The firmware's code may set its value.
 constexpr bool is_set_by_firmware(const Point& point) { return is_readable(point) && !has_hardware(point); }
 
+/// Its value is on or off.
+constexpr bool is_single_bit(const Point& point) {
+  return point.format.type == codec::Type::BOOL && point.count == 1;
+}
+
 /// Goes back to 0 by itself.
 constexpr bool is_pulsed(const Point& point) { return point.pulse.count() > 0; }
 

@@ -106,24 +106,6 @@ void add_all_fields(const Map& older, const Map& newer, std::vector<Change>& cha
   add_fields(older.service.watchdog, newer.service.watchdog, {}, changes);
 }
 
-/// Adds the changes of the tools, which are matched by name.
-void add_tools(const Map& older, const Map& newer, std::vector<Change>& changes) {
-  const auto find = [](Span<const Tool> tools, std::string_view name) {
-    return std::find_if(tools.begin(), tools.end(), [&](const Tool& tool) { return tool.name == name; });
-  };
-  constexpr Severity severity = Severity::compatible;
-  for (const Tool& tool : older.tools) {
-    const auto* const found = find(newer.tools, tool.name);
-    if (found == newer.tools.end())
-      changes.push_back({"tool-removed", severity, std::string(tool.name), tool_text(tool), {}});
-    else
-      add_fields(tool, *found, tool.name, changes);
-  }
-  for (const Tool& tool : newer.tools)
-    if (find(older.tools, tool.name) == older.tools.end())
-      changes.push_back({"tool-added", severity, std::string(tool.name), {}, tool_text(tool)});
-}
-
 template <class Described>
 void add_details(const Described& older, const Described& newer, std::string_view point,
                  std::vector<Change>& changes) {
@@ -140,6 +122,23 @@ std::unordered_map<Key, const Element*> indexed(Span<const Element> elements, Ke
   std::unordered_map<Key, const Element*> index;
   for (const Element& element : elements) index.emplace(key_of(element), &element);
   return index;
+}
+
+/// Adds the changes of the tools, which are matched by name.
+void add_tools(const Map& older, const Map& newer, std::vector<Change>& changes) {
+  const auto name_of = [](const Tool& tool) { return tool.name; };
+  const auto old_tools = indexed<std::string_view>(older.tools, name_of);
+  const auto new_tools = indexed<std::string_view>(newer.tools, name_of);
+  constexpr Severity severity = Severity::compatible;
+  for (const Tool& tool : older.tools) {
+    if (const auto found = new_tools.find(tool.name); found != new_tools.end())
+      add_fields(tool, *found->second, tool.name, changes);
+    else
+      changes.push_back({"tool-removed", severity, std::string(tool.name), tool_text(tool), {}});
+  }
+  for (const Tool& tool : newer.tools)
+    if (old_tools.count(tool.name) == 0)
+      changes.push_back({"tool-added", severity, std::string(tool.name), {}, tool_text(tool)});
 }
 
 using PointsByName = std::unordered_map<std::string_view, const Point*>;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/tools/map_details.hpp"
 
-#include <type_traits>
-
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -134,12 +132,7 @@ std::vector<Detail> details_of(const Point& point) {
 std::string tool_text(const Tool& tool) {
   std::string text;
   for_each_field(tool, Tool{}, [&](const auto& field, const auto& value, const auto& usual) {
-    if (value == usual) return;
-    text += fmt::format("{}{} ", text.empty() ? "" : ", ", field.key);
-    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, bool>)
-      text += value ? "true" : "false";
-    else
-      text += written(value);
+    if (value != usual) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", field.key, written(value));
   });
   return text;
 }

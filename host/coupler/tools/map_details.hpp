@@ -21,7 +21,7 @@ struct Detail {
 /// The same rules in the same order for every point.
 std::vector<Detail> details_of(const Point& point);
 
-/// What a tool says, but its name.
+/// Returns what the map says of a tool, but for its name.
 std::string tool_text(const Tool& tool);
 
 /// The same rules in the same order for every map; of the map itself, not of its points and tools.

@@ -21,7 +21,6 @@ constexpr std::string_view sensor_keys[] = {"closed", "opened", "holds"};
 constexpr std::string_view an_output = "a coil, or of a BOOL in a holding register";
 constexpr std::string_view a_sensor = "a discrete input, or of another single bit";
 
-bool is_single_bit(const Point& point) { return point.format.type == codec::Type::BOOL && point.count == 1; }
 bool can_drive(const Point& point) { return is_single_bit(point) && is_writable(point); }
 bool can_sense(const Point& point) { return is_single_bit(point) && is_readable(point); }
 
@@ -36,7 +35,7 @@ bool is_held(const Point& point) {
   return point.safe == Safe::hold || (!holds_bits(point.table) && point.safe_value.empty());
 }
 
-/// What keeps a point from being part of a tool; `what` goes behind its name.
+/// Says why a point cannot be part of a tool; `what` goes behind its name.
 struct Hindrance {
   std::string what;
   std::string remedy;

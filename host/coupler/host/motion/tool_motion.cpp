@@ -143,7 +143,7 @@ bool ToolMotion::is_seen_off(ToolPart input) const {
 
 bool ToolMotion::is_at_end(Time now) const {
   const ToolPart input = input_of(goal_);
-  return has(input) ? is_seen_on(input) : now - since_ >= tool_.travel;
+  return has(input) ? is_seen_on(input) : now >= end_at();
 }
 
 /// The time at which it is at the end of the goal, as far as is known; Time::max() if it is not.
@@ -161,13 +161,13 @@ bool ToolMotion::is_without_part() const {
 /// Its inputs say that it is where the goal has led to.
 bool ToolMotion::is_there() const {
   if (is_on(input_of(other(goal_)))) return false;
-  return is_on(input_of(goal_)) || (goal_ == ToolEnd::closed && is_on(ToolPart::holds));
+  return is_on(input_of(goal_)) || (counts(ToolPart::holds) && is_on(ToolPart::holds));
 }
 
 /// Returns whether the motion has ended, with which arrive() has dealt then.
 bool ToolMotion::ends(Time now) {
   const bool has_left = is_seen_off(input_of(other(goal_)));
-  const bool may_hold = goal_ == ToolEnd::closed && has(ToolPart::holds);
+  const bool may_hold = counts(ToolPart::holds);
   const bool timed = !has(input_of(goal_));
   const std::optional<ToolState> rest =
       timed ? std::optional(goal_ == ToolEnd::closed ? ToolState::closed : ToolState::open) : std::nullopt;
@@ -196,13 +196,13 @@ void ToolMotion::look(Time now) {
 /// "stuck: neither end", which a time follows.
 std::string ToolMotion::why_stuck() const {
   for (const ToolPart input : inputs)
-    if (has(input) && !is_since_driven(input) && (input != ToolPart::holds || goal_ == ToolEnd::closed))
+    if (counts(input) && !is_since_driven(input))
       return fmt::format("stuck: no new value of {}", name(input));
   if (is_contradictory()) return reason_of(ToolState::contradictory);
   if (const ToolPart back = input_of(other(goal_)); is_on(back))
     return fmt::format("stuck: {} is still on", name(back));
   for (const ToolPart input : {input_of(goal_), ToolPart::holds})
-    if (is_on(input) && !is_seen_on(input) && (input != ToolPart::holds || goal_ == ToolEnd::closed))
+    if (counts(input) && is_on(input) && !is_seen_on(input))
       return fmt::format("stuck: {} has not settled", name(input));
   return "stuck: neither end";
 }
@@ -259,8 +259,7 @@ Time ToolMotion::step(Time now) {
   look(now);
   if (phase_ != Phase::moving) return Time::max();
   Time next = since_ + tool_.timeout;
-  if (!has(input_of(goal_)) && now < since_ + tool_.travel)
-    next = std::min(next, since_ + Duration(tool_.travel));
+  if (const Time end = end_at(); !has(input_of(goal_)) && now < end) next = std::min(next, end);
   return std::min(next, ask(now));
 }
 
@@ -270,10 +269,11 @@ Time ToolMotion::ask(Time now) {
   Time next = Time::max();
   for (const ToolPart input : inputs) {
     Level& seen = level(input);
-    const bool shows_part = input == ToolPart::holds && goal_ == ToolEnd::closed;
-    const Time due = is_on(input)                            ? seen.first.at + Duration(tool_.settle)
-                     : shows_part && end_at() != Time::max() ? end_at()
-                                                             : Time::min();
+    Time due = Time::min();
+    if (is_on(input))
+      due = seen.first.at + Duration(tool_.settle);
+    else if (const Time end = end_at(); input == ToolPart::holds && counts(input) && end != Time::max())
+      due = end;
     if (!has(input) || seen.asked || (is_since_driven(input) && seen.last.at >= due)) continue;
     if (is_since_driven(input) && now < due) {
       next = std::min(next, due);

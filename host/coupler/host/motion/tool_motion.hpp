@@ -114,6 +114,10 @@ class ToolMotion {
   std::optional<Driven>& driven(ToolPart output) { return driven_[static_cast<std::size_t>(output)]; }
   std::string_view name(ToolPart part) const { return point_of(tool_, part); }
   bool has(ToolPart part) const { return !name(part).empty(); }
+  /// Returns whether the goal depends on the input.
+  bool counts(ToolPart input) const {
+    return has(input) && (input != ToolPart::holds || goal_ == ToolEnd::closed);
+  }
   Command motive() const;
   bool is_on(ToolPart input) const { return level(input).known && level(input).on; }
   bool is_contradictory() const { return is_on(ToolPart::closed) && is_on(ToolPart::opened); }

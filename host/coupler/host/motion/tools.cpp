@@ -5,6 +5,8 @@
 #include <array>
 #include <chrono>
 
+#include "coupler/map/lookup_by_name.hpp"
+
 namespace coupler::host {
 namespace {
 
@@ -15,16 +17,17 @@ constexpr std::array<ToolPart, tool_parts> all_parts{ToolPart::close, ToolPart::
 
 Tools::Tools(const Map& map, const ValueTable& values, Time now, Calls calls)
     : map_(map), values_(values), calls_(std::move(calls)), places_(map.points.size()) {
+  LookupByName points(map_.points, [](const Point& point) { return point.name; });
   for (std::size_t i = 0; i < map_.tools.size(); ++i) {
-    running_.push_back({ToolMotion(map_.tools[i], now), {}});
-    for (const ToolPart part : all_parts)
-      if (!point_of(map_.tools[i], part).empty()) places_[index_of(i, part)].push_back({i, part});
+    Running& running = running_.emplace_back(map_.tools[i], now);
+    for (const ToolPart part : all_parts) {
+      const Point* point = points.find(point_of(map_.tools[i], part));
+      if (point == nullptr) continue;  // it does not have that part; the loader has checked the others
+      const auto index = static_cast<std::uint32_t>(point - map_.points.data());
+      running.points[static_cast<std::size_t>(part)] = index;
+      places_[index].push_back({i, part});
+    }
   }
-}
-
-/// The loader has checked that the point is there.
-std::uint32_t Tools::index_of(std::size_t tool, ToolPart part) const {
-  return static_cast<std::uint32_t>(find(map_, point_of(map_.tools[tool], part)) - map_.points.data());
 }
 
 void Tools::begin(std::size_t tool, ToolEnd end, Time now, const Done& done) {
@@ -41,26 +44,20 @@ void Tools::begin(std::size_t tool, ToolEnd end, Time now, const Done& done) {
   calls_.wake();
 }
 
-template <class IsOne>
-void Tools::disturb_each(IsOne is_one, const std::string& why, Time now) {
+void Tools::disturb(std::uint32_t point, const std::string& why, Time now) {
   {
     const std::scoped_lock lock(writing_, mutex_);
-    for (std::size_t i = 0; i < running_.size(); ++i)
-      if (is_one(i)) running_[i].motion.disturb(why, now);
+    for (const Place& place : places_[point]) running_[place.tool].motion.disturb(why, now);
   }
   calls_.wake();
 }
 
-void Tools::disturb(std::uint32_t point, const std::string& why, Time now) {
-  const std::vector<Place>& places = places_[point];
-  const auto has_it = [&](std::size_t tool) {
-    return std::any_of(places.begin(), places.end(), [&](const Place& place) { return place.tool == tool; });
-  };
-  if (!places.empty()) disturb_each(has_it, why, now);
-}
-
 void Tools::disturb_all(const std::string& why, Time now) {
-  disturb_each([](std::size_t) { return true; }, why, now);
+  {
+    const std::scoped_lock lock(writing_, mutex_);
+    for (Running& running : running_) running.motion.disturb(why, now);
+  }
+  calls_.wake();
 }
 
 void Tools::end(const std::string& why, Time now) {
@@ -105,13 +102,13 @@ void Tools::take_results() {
 void Tools::take(std::size_t tool, Time now, Work& work) {
   Running& running = running_[tool];
   if (const auto command = running.motion.take_command()) {
-    Write write = make_bit_write(map_, index_of(tool, command->output), command->on);
+    Write write = make_bit_write(map_, running.point(command->output), command->on);
     write.ordered = true;
     write.until = now + map_.tools[tool].timeout;
     write.listener = &sent_.emplace_back(*this, tool, *command);
     work.writes.push_back(write);
   }
-  for (const ToolPart input : running.motion.take_asked()) work.asked.push_back(index_of(tool, input));
+  for (const ToolPart input : running.motion.take_asked()) work.asked.push_back(running.point(input));
   if (const auto status = running.motion.take_status()) work.shown.emplace_back(tool, *status);
   for (ToolResult& result : running.motion.take_results()) {
     work.results.emplace_back(std::move(running.goals.front()), std::move(result));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -77,10 +78,13 @@ class Tools {
     std::optional<std::string> failure;  ///< none: it has no result yet; empty: it was carried out
   };
   struct Running {
+    Running(const Tool& tool, Time now) : motion(tool, now) {}
+    std::uint32_t point(ToolPart part) const { return points[static_cast<std::size_t>(part)]; }
     ToolMotion motion;
-    std::vector<Done> goals;  ///< without a result, oldest first
+    std::array<std::uint32_t, tool_parts> points{};  ///< of the parts that it has
+    std::vector<Done> goals;                         ///< without a result, oldest first
   };
-  /// What is to be done without mutex_.
+  /// Work that is done without mutex_.
   struct Work {
     std::vector<Write> writes;
     std::vector<std::uint32_t> asked;
@@ -88,12 +92,9 @@ class Tools {
     std::vector<std::pair<Done, ToolResult>> results;
   };
 
-  std::uint32_t index_of(std::size_t tool, ToolPart part) const;
   void on_result(Sent& sent, const WriteResult& result);
   void take_results();
   void take(std::size_t tool, Time now, Work& work);
-  template <class IsOne>
-  void disturb_each(IsOne is_one, const std::string& why, Time now);
   template <class Change>
   void each_place(Span<const std::uint32_t> points, Change change);
 

@@ -24,7 +24,7 @@ bool is_number(const Point& point) {
 
 /// Returns the input that a page shows for a point that can be written.
 ordered_json write_json(const Point& point, const std::string& range) {
-  if (point.count == 1 && point.format.type == codec::Type::BOOL) return {{"kind", "switch"}};
+  if (is_single_bit(point)) return {{"kind", "switch"}};
   if (is_number(point)) return {{"kind", "number"}, {"range", range}};
   const std::string_view example = point.count > 1                           ? "as [1, 2, 3]"
                                    : codec::is_bit_string(point.format.type) ? "as 0x00FF"

@@ -312,7 +312,7 @@ void DeviceDriver::accept(const Write& write) {
   say_refused(fmt::format("{}: {}", point.name, why));
 }
 
-/// What a follower does meanwhile is over, too.
+/// Followers stop what they do before the request, and what they begin while it is made.
 std::future<CallAnswer> DeviceDriver::make_safe() {
   const auto tell = [this] {
     for (const auto& follower : followers_) follower->safe_comes();

@@ -19,8 +19,6 @@ namespace {
 
 using Outcome = WriteResult::Outcome;
 
-bool is_bit(const Point& point) { return point.format.type == codec::Type::BOOL && point.count == 1; }
-
 /// The value as the service `write` takes it.
 std::string value_text(const Write& write, const Point& point) {
   if (!holds_bits(point.table)) return format_value(write.registers.data(), point);
@@ -71,7 +69,7 @@ void DeviceServices::start(Node& node, Device device) {
 }
 
 void DeviceServices::offer_set(std::uint32_t index) {
-  if (const Point& point = map_.points[index]; is_bit(point))
+  if (const Point& point = map_.points[index]; is_single_bit(point))
     calls_->offer_set(fmt::format("{}/{}/set", map_.name, point.name),
                       [this, index](bool on) { return answer_set(index, on); });
 }

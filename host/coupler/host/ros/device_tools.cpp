@@ -65,7 +65,8 @@ void DeviceTools::offer(std::size_t tool, ServiceThread& service, ToolEnd end) {
 DeviceTools::~DeviceTools() { DeviceTools::end(); }
 
 void DeviceTools::write_comes(std::uint32_t point) {
-  tools_.disturb(point, fmt::format("{} was written directly", map_.points[point].name), now());
+  if (tools_.has(point))
+    tools_.disturb(point, fmt::format("{} was written directly", map_.points[point].name), now());
 }
 
 void DeviceTools::safe_comes() { tools_.disturb_all("safe values were requested", now()); }
