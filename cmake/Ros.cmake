@@ -7,7 +7,7 @@ set(messages BoolArray.msg BoolSample.msg BoolStamped.msg Float64Sample.msg Floa
              StringSample.msg StringStamped.msg ToolState.msg UInt64Sample.msg UInt64Stamped.msg)
 set(actions WaitFor.action)
 set(services CancelScheduled.srv ListScheduled.srv Read.srv Schedule.srv Write.srv)
-set(left_out "no catkin, roscpp, std_srvs, diagnostic_updater, actionlib or libmodbus, or COUPLER_ROS=OFF; scripts/install-packages build ros")
+set(left_out "no libmodbus, or COUPLER_ROS=OFF; scripts/install-packages build")
 if(COUPLER_ROS STREQUAL OFF OR NOT libmodbus_FOUND)
   set(COUPLER_ROS_VERSION OFF)
 endif()

@@ -13,21 +13,31 @@ if(CMAKE_SOURCE_DIR STREQUAL PROJECT_SOURCE_DIR AND
   set(CATKIN_DEVEL_PREFIX ${PROJECT_BINARY_DIR}/catkin)
   set(CATKIN_BUILD_BINARY_PACKAGE ON)  # no setup.bash of a workspace is installed, nor to another prefix than was asked for
 endif()
-find_package(catkin QUIET COMPONENTS actionlib actionlib_msgs roscpp std_msgs std_srvs diagnostic_updater message_generation)
-if(NOT catkin_FOUND)
+set(components actionlib actionlib_msgs roscpp sensor_msgs std_msgs std_srvs diagnostic_updater message_generation)
+find_package(catkin QUIET COMPONENTS ${components})
+set(missing)
+foreach(package catkin ${components})  # where one is not there, catkin is found all the same
+  if(NOT ${package}_FOUND)
+    list(APPEND missing ${package})
+  endif()
+endforeach()
+if(missing)
+  list(JOIN missing ", " missing)
+  set(left_out "of ROS 1 there is no ${missing}; scripts/install-packages build ros")
   if(NOT COUPLER_ROS STREQUAL AUTO)
-    message(FATAL_ERROR "COUPLER_ROS=${COUPLER_ROS}, but catkin with actionlib, roscpp, std_msgs, std_srvs, diagnostic_updater and "
-                        "message_generation was not found (scripts/install-packages ros)")
+    message(FATAL_ERROR "COUPLER_ROS=${COUPLER_ROS}, but ${left_out}")
   endif()
   return()
 endif()
 set(COUPLER_WITH_ROS 1)
+# Not in CATKIN_DEPENDS: that wants it in package.xml. Who links coupler_ros gets its headers from there, and it has no library.
+find_package(control_msgs QUIET)
 
 add_message_files(DIRECTORY host/msg FILES ${messages})
 add_service_files(DIRECTORY host/srv FILES ${services})
 add_action_files(DIRECTORY host/action FILES ${actions})
 generate_messages(DEPENDENCIES actionlib_msgs std_msgs)
-catkin_package(CATKIN_DEPENDS actionlib actionlib_msgs roscpp std_msgs std_srvs diagnostic_updater message_runtime
+catkin_package(CATKIN_DEPENDS actionlib actionlib_msgs roscpp sensor_msgs std_msgs std_srvs diagnostic_updater message_runtime
                CFG_EXTRAS ${PROJECT_NAME}-extras.cmake)
 # Where rosmsg and rossrv look for them; our folders are not at the top.
 foreach(kind action msg srv)
@@ -55,6 +65,12 @@ if(plain)
     link(${PROJECT_BINARY_DIR}/bin/${program} ${devel}/lib/${PROJECT_NAME}/${program})
   endforeach()
   file(GENERATE OUTPUT ${devel}/.catkin CONTENT "")
+  set(overlay)
+  if(control_msgs_FOUND AND NOT control_msgs_PREFIX STREQUAL roscpp_PREFIX)  # -Dcontrol_msgs_DIR=…
+    set(overlay "export ROS_PACKAGE_PATH=\"$ROS_PACKAGE_PATH:${control_msgs_PREFIX}/share\" \\
+  PYTHONPATH=\"$PYTHONPATH:${control_msgs_PREFIX}/${CATKIN_GLOBAL_PYTHON_DESTINATION}\"
+")
+  endif()
   file(GENERATE OUTPUT ${devel}/setup.bash CONTENT
 "# Sourced by bash: ROS 1 with this build's programs, launch files and messages.
 source \"${CATKIN_DEVEL_PREFIX}/setup.bash\"
@@ -63,7 +79,7 @@ export CMAKE_PREFIX_PATH=\"${devel}$(without \"$CMAKE_PREFIX_PATH\" \"${devel}\"
 ROS_PACKAGE_PATH=$(without \"$ROS_PACKAGE_PATH\" \"${PROJECT_SOURCE_DIR}\")
 export ROS_PACKAGE_PATH=\"${devel}/share$(without \"\${ROS_PACKAGE_PATH#:}\" \"${devel}/share\")\"
 unset -f without
-")
+${overlay}")
 endif()
 if(IS_SYMLINK ${package}/launch)  # of an older build folder: what follows would be written into the source
   file(REMOVE ${package}/launch)
@@ -85,10 +101,13 @@ set(BUILD_SHARED_LIBS OFF)
 get_directory_property(definitions COMPILE_DEFINITIONS)
 list(FILTER definitions EXCLUDE REGEX ^ROS_PACKAGE_NAME)  # other packages link coupler_ros and have a name of their own
 set_directory_properties(PROPERTIES COMPILE_DEFINITIONS "" INCLUDE_DIRECTORIES "")
+if(control_msgs_FOUND)
+  list(APPEND definitions COUPLER_WITH_CONTROL_MSGS)
+endif()
 add_library(coupler_ros INTERFACE)
 target_compile_definitions(coupler_ros INTERFACE ${definitions})
 # ROS's headers are not written for our warnings.
 #catkin_lint: ignore_once missing_directory
 target_include_directories(coupler_ros SYSTEM INTERFACE
-  ${catkin_INCLUDE_DIRS} $<BUILD_INTERFACE:${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_INCLUDE_DESTINATION}>)
+  ${catkin_INCLUDE_DIRS} ${control_msgs_INCLUDE_DIRS} $<BUILD_INTERFACE:${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_INCLUDE_DESTINATION}>)
 target_link_libraries(coupler_ros INTERFACE ${catkin_LIBRARIES})

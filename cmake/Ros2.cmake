@@ -15,6 +15,9 @@ elseif(NOT "$ENV{AMENT_PREFIX_PATH}" STREQUAL "${COUPLER_AMENT_PREFIX_PATH}")
   if(before)
     list(REMOVE_ITEM before ${now})
   endif()
+  if(before)
+    list(APPEND before ${COUPLER_CONTROL_MSGS})  # was built upon those, and may have been given by -Dcontrol_msgs_DIR
+  endif()
   get_cmake_property(variables CACHE_VARIABLES)
   foreach(prefix IN LISTS before)
     foreach(variable IN LISTS variables)
@@ -28,7 +31,7 @@ elseif(NOT "$ENV{AMENT_PREFIX_PATH}" STREQUAL "${COUPLER_AMENT_PREFIX_PATH}")
 endif()
 
 enable_language(C)  # of which a part of the generated code is
-set(interfaces action_msgs builtin_interfaces diagnostic_msgs rcl_interfaces rosgraph_msgs std_msgs std_srvs)
+set(interfaces action_msgs builtin_interfaces diagnostic_msgs rcl_interfaces rosgraph_msgs sensor_msgs std_msgs std_srvs)
 set(missing)
 foreach(package ament_cmake rcl rcl_action rcl_yaml_param_parser rcutils rmw rosidl_default_generators rosidl_typesupport_cpp ${interfaces})
   find_package(${package} QUIET)
@@ -46,6 +49,7 @@ if(missing)
 endif()
 set(COUPLER_WITH_ROS 2)
 find_package(type_description_interfaces QUIET)  # not in Humble
+find_package(control_msgs QUIET)
 
 # The target that generates must have the name of the package.
 set(files)
@@ -78,6 +82,22 @@ add_custom_target(${PROJECT_NAME}_generate_messages DEPENDS ${PROJECT_NAME} ${py
 # compiler's cache serves both.
 get_directory_property(definitions COMPILE_DEFINITIONS)
 set_directory_properties(PROPERTIES COMPILE_DEFINITIONS "")
+set(COUPLER_CONTROL_MSGS "" CACHE INTERNAL "")
+if(control_msgs_FOUND)
+  get_filename_component(prefix ${control_msgs_DIR}/../../.. ABSOLUTE)
+  set(COUPLER_CONTROL_MSGS ${prefix} CACHE INTERNAL "")
+  list(APPEND interfaces control_msgs)
+  list(APPEND definitions COUPLER_WITH_CONTROL_MSGS)
+  get_target_property(folders control_msgs::control_msgs__rosidl_generator_cpp INTERFACE_INCLUDE_DIRECTORIES)
+  foreach(folder IN LISTS folders)
+    if(EXISTS ${folder}/control_msgs/action/parallel_gripper_command.hpp)
+      list(APPEND definitions COUPLER_WITH_PARALLEL_GRIPPER)
+    endif()
+  endforeach()
+  if(NOT COUPLER_WITH_PARALLEL_GRIPPER IN_LIST definitions)
+    message(STATUS "Left out: the driver's action ParallelGripperCommand (${control_msgs_DIR} is older than that; update control_msgs)")
+  endif()
+endif()
 add_library(coupler_ros INTERFACE)
 target_compile_definitions(coupler_ros INTERFACE ${definitions})
 target_link_libraries(coupler_ros INTERFACE
@@ -111,9 +131,13 @@ endif()
 
 # The folder in which rcl is has the setup.bash of its ROS 2.
 get_filename_component(prefix ${rcl_DIR}/../../.. ABSOLUTE)
+set(overlay)
+if(COUPLER_CONTROL_MSGS AND NOT COUPLER_CONTROL_MSGS STREQUAL prefix)  # of a workspace, or -Dcontrol_msgs_DIR=…
+  set(overlay "source \"${COUPLER_CONTROL_MSGS}/share/control_msgs/local_setup.bash\"\n")
+endif()
 file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/setup.bash CONTENT
 "# Sourced by bash: the ROS 2 of this build, its programs and its messages. Not for a shell that runs ROS 1's.
 source \"${prefix}/setup.bash\"
-export PATH=\"${PROJECT_BINARY_DIR}/bin:$PATH\" LD_LIBRARY_PATH=\"${PROJECT_BINARY_DIR}/lib:$LD_LIBRARY_PATH\" \\
+${overlay}export PATH=\"${PROJECT_BINARY_DIR}/bin:$PATH\" LD_LIBRARY_PATH=\"${PROJECT_BINARY_DIR}/lib:$LD_LIBRARY_PATH\" \\
   PYTHONPATH=\"${PROJECT_BINARY_DIR}/rosidl_generator_py\${PYTHONPATH:+:$PYTHONPATH}\"
 ")
