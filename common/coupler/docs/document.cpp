@@ -139,7 +139,7 @@ Document make_document(const Map& map, Span<const int> lines, Provenance provena
   document.points.reserve(map.points.size());
   for (std::size_t i = 0; i < map.points.size(); ++i)
     document.points.push_back(describe(map.points[i], i < lines.size() ? lines[i] : 0));
-  for (const Tool& tool : map.tools) document.tools.push_back(describe(tool));
+  document.tools = describe_tools(map);
   document.mbpoll = mbpoll_commands(map);
   document.ros = ros_commands(map, provenance.file);
   document.drawings = drawings_of(map);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "coupler/docs/words.hpp"
+#include "coupler/map/joint.hpp"
 
 namespace coupler::docs {
 namespace {
@@ -31,7 +32,26 @@ std::string outputs(const Tool& tool) {
   return text;
 }
 
-}  // namespace
+std::string on_cancel(const Tool& tool) {
+  switch (tool.on_cancel) {
+    case OnCancel::open: return "opens";
+    case OnCancel::close: return "closes";
+    case OnCancel::stay: break;
+  }
+  return {};
+}
+
+/// Every tool is a joint, so the joints of all tools are shown, or of none.
+bool shows_joints(const Map& map) {
+  return std::any_of(map.tools.begin(), map.tools.end(), [](const Tool& tool) {
+    return !tool.joint.empty() || tool.positions != JointPositions{};
+  });
+}
+
+std::string joint(const Map& map, const Tool& tool) {
+  return fmt::format("{}: open {}, closed {}", joint_name(map, tool), tool.positions.open,
+                     tool.positions.closed);
+}
 
 ToolDescription describe(const Tool& tool) {
   ToolDescription out;
@@ -46,6 +66,19 @@ ToolDescription describe(const Tool& tool) {
   }
   out.timeout = "after " + words(tool.timeout);
   out.outputs = outputs(tool);
+  out.cancel = on_cancel(tool);
+  return out;
+}
+
+}  // namespace
+
+std::vector<ToolDescription> describe_tools(const Map& map) {
+  std::vector<ToolDescription> out;
+  const bool with_joint = shows_joints(map);
+  for (const Tool& tool : map.tools) {
+    out.push_back(describe(tool));
+    if (with_joint) out.back().joint = joint(map, tool);
+  }
   return out;
 }
 

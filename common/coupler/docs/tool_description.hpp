@@ -20,6 +20,8 @@ struct ToolDescription {
   std::string empty;    ///< what becomes of it when it is closed and holds no part: "fails", "closed"
   std::string timeout;  ///< "after 800 ms"
   std::string outputs;  ///< "off at the end, may be written directly"
+  std::string cancel;   ///< what it does when its goal is cancelled: "opens"; empty: nothing more
+  std::string joint;    ///< "clamp_joint: open 0.04, closed 0"; empty if the map says nothing of joints
 };
 
 /// A column of a table of tools.
@@ -39,9 +41,12 @@ constexpr ToolColumn tool_columns[] = {
     {"without a part", &ToolDescription::empty},
     {"stuck", &ToolDescription::timeout},
     {"outputs", &ToolDescription::outputs},
+    {"on cancel", &ToolDescription::cancel},
+    {"joint", &ToolDescription::joint},
 };
 
-ToolDescription describe(const Tool& tool);
+/// In the order of the map.
+std::vector<ToolDescription> describe_tools(const Map& map);
 
 /// Those that one of the tools fills.
 std::vector<ToolColumn> used_columns(const std::vector<ToolDescription>& tools);

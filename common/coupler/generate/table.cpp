@@ -33,6 +33,7 @@ using ::coupler::Framing;
 using ::coupler::HostOptions;
 using ::coupler::Map;
 using ::coupler::NamedValue;
+using ::coupler::OnCancel;
 using ::coupler::OnEmpty;
 using ::coupler::OnReconnect;
 using ::coupler::OnShutdown;
@@ -85,7 +86,7 @@ constexpr Map map{{
     {poll}, {changes}, {verify},
     {security},  // roles, those of clients without TLS and without a role, files, port
     {read_whole_name},
-    {wait_for}, {tools_name},
+    {wait_for}, {tools_name}, {joint_rate},
 }};
 
 }}  // namespace coupler::maps::{name}
@@ -295,7 +296,8 @@ std::string table_source(const Map& map, const Provenance& provenance) {
       arg("coupler_watchdog", coupler_watchdog(map.coupler_watchdog)),
       arg("on_reconnect", enumerator(map.on_reconnect)), arg("on_shutdown", enumerator(map.on_shutdown)),
       arg("poll", enumerator(map.poll)), arg("changes", map.changes), arg("verify", enumerator(map.verify)),
-      arg("wait_for", map.wait_for), arg("listen", literal(map.service.listen)),
+      arg("wait_for", map.wait_for), arg("joint_rate", code(map.joint_rate)),
+      arg("listen", literal(map.service.listen)),
       arg("allow_name", map.service.allow.empty() ? "{}" : "allow"),
       arg("watchdog", aggregate(map.service.watchdog)), arg("readback", map.service.readback),
       arg("text", literal_lines(map.text, "    ")), arg("map_name", literal(map.name)),

@@ -49,6 +49,11 @@ inline std::string written(const Tls& tls) {
                      tls.name.empty() ? "" : " as ", tls.name);
 }
 
+/// "{open: 0.04, closed: 0}"
+inline std::string written(const JointPositions& positions) {
+  return fmt::format("{{open: {}, closed: {}}}", positions.open, positions.closed);
+}
+
 /// The subject of a key of a point.
 enum class About { point, reading, writing };
 
@@ -117,7 +122,8 @@ constexpr auto fields_of(const Map*) {
       field("on_reconnect", &Map::on_reconnect, "on-reconnect-changed"),
       field("on_shutdown", &Map::on_shutdown, "on-shutdown-changed"),
       field("poll", &Map::poll, "poll-changed"), field("changes", &Map::changes, "changes-changed"),
-      field("verify", &Map::verify, "verify-changed"), field("wait_for", &Map::wait_for, "wait-for-changed"));
+      field("verify", &Map::verify, "verify-changed"), field("wait_for", &Map::wait_for, "wait-for-changed"),
+      field("joint_rate", &Map::joint_rate, "joint-rate-changed", About::reading, "Hz"));
 }
 
 /// And `allow`.
@@ -201,7 +207,13 @@ constexpr auto fields_of(const Tool*) {
                          field("holds", &Tool::holds, change), field("travel", &Tool::travel, change),
                          field("timeout", &Tool::timeout, change), field("settle", &Tool::settle, change),
                          field("hold", &Tool::hold, change), field("empty", &Tool::empty, change),
-                         field("direct", &Tool::direct, change));
+                         field("direct", &Tool::direct, change), field("joint", &Tool::joint, change),
+                         field("positions", &Tool::positions, change),
+                         field("on_cancel", &Tool::on_cancel, change));
+}
+
+constexpr auto fields_of(const JointPositions*) {
+  return std::make_tuple(field("open", &JointPositions::open), field("closed", &JointPositions::closed));
 }
 
 template <class T, class = void>

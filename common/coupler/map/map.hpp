@@ -17,7 +17,7 @@ namespace coupler {
 
 /// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
 /// not compile.
-constexpr int model_version = 17;
+constexpr int model_version = 18;
 
 /// The place of the coupler. ROS parameters and arguments override it.
 struct Connection {
@@ -127,6 +127,26 @@ constexpr Enumeration<OnEmpty, 2> enumeration(OnEmpty) {
   return {"OnEmpty", {{OnEmpty::abort, "abort"}, {OnEmpty::ok, "ok"}}};
 }
 
+/// What a tool does when its goal is cancelled.
+enum class OnCancel : std::uint8_t {
+  stay,  ///< nothing more is driven
+  open,
+  close
+};
+constexpr Enumeration<OnCancel, 3> enumeration(OnCancel) {
+  return {"OnCancel", {{OnCancel::stay, "stay"}, {OnCancel::open, "open"}, {OnCancel::close, "close"}}};
+}
+
+/// The ends of a tool as positions of a joint, in metres or radians.
+struct JointPositions {
+  double open = 1;
+  double closed = 0;
+};
+constexpr bool operator==(const JointPositions& a, const JointPositions& b) {
+  return a.open == b.open && a.closed == b.closed;
+}
+constexpr bool operator!=(const JointPositions& a, const JointPositions& b) { return !(a == b); }
+
 /// Something with two ends: a gripper, a clamp, a cylinder, a vacuum cup. Its points are bits of the map; one
 /// that it does not have is empty.
 struct Tool {
@@ -141,7 +161,10 @@ struct Tool {
   std::chrono::milliseconds settle{0};      ///< an input counts when it has been on for so long
   bool hold = true;  ///< its output stays on at the end; otherwise it is switched off there
   OnEmpty empty = OnEmpty::abort;
-  bool direct = false;  ///< programs may also write its outputs directly
+  bool direct = false;       ///< programs may also write its outputs directly
+  std::string_view joint{};  ///< its name as a joint; empty: joint_name() has the usual one
+  JointPositions positions{};
+  OnCancel on_cancel = OnCancel::stay;
 };
 
 /// One wire of the simulated chip: `from` an output `to` an input, or a square wave `to` an input.
@@ -177,6 +200,7 @@ struct Map {
   Span<const TableRange> read_whole{};  ///< by place, none overlaps another: read whole for any point in it
   bool wait_for = false;                ///< the driver serves an action that waits for values
   Span<const Tool> tools{};             ///< in the order of the file
+  double joint_rate = 10;               ///< Hz, at which the driver publishes the positions of the tools
 };
 
 /// The point of that name, or nullptr.
@@ -184,6 +208,20 @@ constexpr const Point* find(const Map& map, std::string_view name) {
   for (const Point& point : map.points)
     if (point.name == name) return &point;
   return nullptr;
+}
+
+/// Returns whether the point hides the action: it has the action's name, or a name below it, where the
+/// action's own topics and services are.
+constexpr bool takes_place_of(std::string_view point, std::string_view action) {
+  if (point.substr(0, action.size()) != action) return false;
+  return point.size() == action.size() || point[action.size()] == '/';
+}
+
+/// Returns whether a point hides the action.
+constexpr bool is_taken(const Map& map, std::string_view action) {
+  for (const Point& point : map.points)
+    if (takes_place_of(point.name, action)) return true;
+  return false;
 }
 
 /// The tool that has the point of that name as an output, or nullptr.

@@ -14,6 +14,7 @@
 #include "coupler/docs/tool_description.hpp"
 #include "coupler/json/json_text.hpp"
 #include "coupler/map/fields.hpp"
+#include "coupler/map/joint.hpp"
 #include "coupler/plan/cost.hpp"
 #include "coupler/plan/explain.hpp"
 #include "coupler/plan/read_span.hpp"
@@ -88,8 +89,7 @@ std::string not_read_text(const Map& map) {
 /// A table; empty if the map has no tool.
 std::string tools_text(const Map& map) {
   if (map.tools.empty()) return {};
-  std::vector<docs::ToolDescription> tools;
-  for (const Tool& tool : map.tools) tools.push_back(docs::describe(tool));
+  const std::vector<docs::ToolDescription> tools = docs::describe_tools(map);
   std::vector<std::string> lines(1 + tools.size());
   for (const docs::ToolColumn& column : docs::used_columns(tools)) {
     std::size_t width = column.title.size();
@@ -136,9 +136,11 @@ std::string strategies_text(const Map& map, const plan::NetworkTiming& timing) {
   return text;
 }
 
-ordered_json tool_json(const Tool& tool) {
-  ordered_json json{{"name", tool.name}};
-  for_each_field(tool, [&](const auto& field, const auto& value) {
+/// Returns the values of fields_of(Struct) by their keys.
+template <class Struct>
+ordered_json fields_json(const Struct& object) {
+  ordered_json json;
+  for_each_field(object, [&](const auto& field, const auto& value) {
     using Value = std::decay_t<decltype(value)>;
     const std::string key(field.key);
     if constexpr (std::is_same_v<Value, std::chrono::milliseconds>)
@@ -147,9 +149,18 @@ ordered_json tool_json(const Tool& tool) {
       json[key] = value.empty() ? ordered_json() : ordered_json(value);
     else if constexpr (std::is_enum_v<Value>)
       json[key] = to_string(value);
+    else if constexpr (has_fields<Value>)
+      json[key] = fields_json(value);
     else
       json[key] = value;
   });
+  return json;
+}
+
+ordered_json tool_json(const Map& map, const Tool& tool) {
+  ordered_json json{{"name", tool.name}};
+  json.update(fields_json(tool));
+  json["joint"] = joint_name(map, tool);
   return json;
 }
 
@@ -242,7 +253,7 @@ std::string plan_json(const std::string& file, const Map& map, const plan::Netwo
   for (const Point& point : map.points)
     if (const auto reason = plan::why_not_read(map, point))
       json["not_read"].push_back({{"point", point.name}, {"reason", plan::to_string(*reason)}});
-  for (const Tool& tool : map.tools) json["tools"].push_back(tool_json(tool));
+  for (const Tool& tool : map.tools) json["tools"].push_back(tool_json(map, tool));
   for (const plan::Strategy& strategy : plan::compare_strategies(map, timing))
     json["strategies"].push_back(strategy_json(strategy));
   return json_text(json);

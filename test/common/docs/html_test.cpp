@@ -81,6 +81,21 @@ TEST(Html, Tools_have_a_section_if_there_are_any) {
   EXPECT_THAT(page, Not(HasSubstr("suction/write"))) << "only the tool writes it";
 }
 
+TEST(Html, All_joints_are_shown_if_the_map_sets_joint_or_positions_of_one_tool) {
+  auto builder = fakes::MapBuilder().coil("suction", 0).coil("valve", 1);
+  Tool tools[2];
+  tools[0].name = "cup";
+  tools[0].close = "suction";
+  tools[1].name = "clamp";
+  tools[1].close = "valve";
+  builder.head().tools = tools;
+  EXPECT_THAT(html_page(of(builder)), Not(HasSubstr("Joint")));
+  tools[0].joint = "finger";
+  EXPECT_THAT(html_page(of(builder)),
+              AllOf(HasSubstr("<dt>Joint</dt><dd>finger: open 1, closed 0</dd>"),
+                    HasSubstr("<dt>Joint</dt><dd>device/clamp: open 1, closed 0</dd>")));
+}
+
 TEST(Html, A_map_without_points_has_a_page) {
   EXPECT_THAT(html_page(of(fakes::MapBuilder())), HasSubstr("<table id=\"points\">"));
 }

@@ -91,6 +91,10 @@ TEST(Markdown, Tools_have_a_table_if_there_are_any) {
                 "|---|---|---|---|---|---|---|---|\n"
                 "| gripper | grip on | release on | after 300 ms | after 300 ms | part on for 20 ms | "
                 "fails | after 2 s |\n"));
+  gripper.on_cancel = OnCancel::open;
+  gripper.positions.open = 0.04;
+  EXPECT_THAT(markdown_page(make_document(builder.build()->map(), {}, {"cell.yaml", "", "1.2.3"})),
+              HasSubstr("| after 2 s | opens | cell/gripper\\: open 0.04, closed 0 |\n"));
 }
 
 }  // namespace

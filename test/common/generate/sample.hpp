@@ -68,6 +68,8 @@ inline std::shared_ptr<const OwnedMap> sample() {
   clamp.close = "lamp";
   clamp.closed = "button";
   clamp.travel = 300ms;
+  clamp.positions.open = 0.04;
+  clamp.on_cancel = OnCancel::open;
   head.tools = owned->keep(std::vector<Tool>{clamp});
   owned->finish(head, {lamp, button, level, label, flag, parts},
                 {{"lamp", "button", true, 0us}, {"", "button", false, 1000000us}});

@@ -60,8 +60,8 @@ TEST(Table, Wires_of_the_simulated_chip_are_rows) {
 TEST(Table, Tools_are_rows) {
   EXPECT_THAT(source(),
               AllOf(HasSubstr("    {\"clamp\", \"lamp\", \"\", \"button\", \"\", \"\", 300ms, 2000ms, "
-                              "0ms, true, OnEmpty::abort, false},\n"),
-                    HasSubstr("    false, tools,\n};")));
+                              "0ms, true, OnEmpty::abort, false, \"\", {0.04, 0.0}, OnCancel::open},\n"),
+                    HasSubstr("    false, tools, 10.0,\n};")));
 }
 
 TEST(Table, Connection_polling_and_limits_are_in_it) {

@@ -137,6 +137,14 @@ TEST(Changes, Tools_are_told_by_their_names) {
   EXPECT_THAT(changes_between(lift, replaced(lift, "close: lamp, travel: 300ms", "open: lamp, travel: 1s")),
               ElementsAre("compatible tool-changed lift: close lamp, open none, travel 300ms -> "
                           "close none, open lamp, travel 1000ms"));
+  EXPECT_THAT(
+      changes_between(lift,
+                      replaced(lift, "300ms", "300ms, joint: z, positions: {open: 0.4}, on_cancel: open")),
+      ElementsAre(
+          "compatible tool-changed lift: joint none, positions {open: 1, closed: 0}, on_cancel stay -> "
+          "joint z, positions {open: 0.4, closed: 0}, on_cancel open"));
+  EXPECT_THAT(changes_by("rate: 10", "rate: 10\njoint_rate: 25"),
+              ElementsAre("compatible joint-rate-changed : 10 Hz -> 25 Hz"));
 }
 
 TEST(Changes, How_the_host_writes_a_point_is_compatible) {

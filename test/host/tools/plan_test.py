@@ -80,7 +80,12 @@ class Plan(Cli):
                       "  lift  lamp on    horn on   after 300 ms  after 300 ms  after 2 s  off at the end\n", self.plan(text=text).stdout)
         self.assertEqual(self.json(text=text)["tools"], [{
             "name": "lift", "close": "lamp", "open": "horn", "closed": None, "opened": None, "holds": None, "travel_ms": 300,
-            "timeout_ms": 2000, "settle_ms": 0, "hold": False, "empty": "abort", "direct": False}])
+            "timeout_ms": 2000, "settle_ms": 0, "hold": False, "empty": "abort", "direct": False,
+            "joint": "cell/lift", "positions": {"open": 1, "closed": 0}, "on_cancel": "stay"}])
+        joint = text.replace("hold: false", "joint: z, positions: {open: 0.4}, on_cancel: open")
+        self.assertIn("\n  lift  lamp on    horn on   after 300 ms  after 300 ms  after 2 s  opens      z: open 0.4, closed 0\n",
+                      self.plan(text=joint).stdout)
+        self.assertEqual(self.json(text=joint)["tools"][0]["joint"], "z")
         self.assertNotIn("Tools", self.plan().stdout)
         self.assertEqual(self.json()["tools"], [])
 

@@ -270,6 +270,9 @@ constexpr Key keys[] = {
     project("tools", S::map, K::named, "{clamp: {close: valve, travel: 300ms}}",
             "what the driver opens and closes: grippers, clamps, cylinders, vacuum cups")
         .holds(S::tool),
+    project("joint_rate", S::map, K::number, "25", "at how many Hz the driver publishes the tools as joints")
+        .otherwise("10")
+        .within(0.1, 1000),
     project("unreadable", S::map, K::section, "[{table: coils, from: 8, to: 15}]",
             "addresses that the device refuses")
         .lists(S::area),
@@ -300,6 +303,18 @@ constexpr Key keys[] = {
         .one_of<OnEmpty>(),
     project("direct", S::tool, K::boolean, "true", "whether programs may also write its outputs directly")
         .otherwise("false"),
+    project("joint", S::tool, K::text, "clamp_joint",
+            "its name as a joint of MoveIt; NAME/TOOL if not given"),
+    project("positions", S::tool, K::section, "{open: 0.04, closed: 0}",
+            "its ends as positions of the joint, in metres or radians")
+        .holds(S::positions),
+    project("on_cancel", S::tool, K::choice, "open", "what it does when its goal is cancelled")
+        .otherwise("stay")
+        .one_of<OnCancel>(),
+    project("open", S::positions, K::number, "0.04", "the joint's position where the tool is open")
+        .otherwise("1"),
+    project("closed", S::positions, K::number, "0.01", "the joint's position where the tool is closed")
+        .otherwise("0"),
     // `scale:`, `iio:`, `pwm:`, `deadman:`
     project("gain", S::scale, K::number, "0.1", "raw is multiplied by it").otherwise("1"),
     project("offset", S::scale, K::number, "-40", "and this is added").otherwise("0"),

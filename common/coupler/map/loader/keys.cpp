@@ -30,6 +30,7 @@ std::string_view describe(Section section) {
     case Section::role: return "a role";
     case Section::tls: return "'tls'";
     case Section::tool: return "a tool";
+    case Section::positions: return "'positions'";
     case Section::none: break;
   }
   return "nothing";

@@ -38,8 +38,9 @@ enum class Section : std::uint32_t {
   security = 1U << 19U,
   role = 1U << 20U,  ///< one of `roles:`
   tls = 1U << 21U,
-  tool = 1U << 22U,  ///< one of `tools:`
-  last = tool
+  tool = 1U << 22U,       ///< one of `tools:`
+  positions = 1U << 23U,  ///< `positions:` of a tool
+  last = positions
 };
 constexpr Section operator|(Section a, Section b) {
   return static_cast<Section>(static_cast<unsigned>(a) | static_cast<unsigned>(b));

@@ -181,7 +181,7 @@ std::optional<MapLayout> read_map(const Entry& file, const MapSource& source, Pl
   check_broadcast(top, points, head, context);
   check_reserved(reserved, points, context);
   head.security = read_security(top, points, head.connection.port, context);
-  const std::vector<Tool> tools = read_tools(top, points, context);
+  const std::vector<Tool> tools = read_tools(top, points, head, context);
   if (problems.has_errors()) return std::nullopt;
   head.unreadable = map.keep(by_place(unreadable));
   head.read_whole = map.keep(by_place(whole));

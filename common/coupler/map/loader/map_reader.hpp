@@ -46,8 +46,9 @@ Security read_security(const Reader& top, const DraftPoints& points, std::uint16
 std::vector<SimWire> read_sim(const Reader& top, const DraftPoints& points, const Context& context);
 
 /// `tools:`, in the order of the file. Their names are parts of ROS names; each has outputs of its own, and a
-/// sensor or a time for each of its ends.
-std::vector<Tool> read_tools(const Reader& top, const DraftPoints& points, const Context& context);
+/// sensor or a time for each of its ends, and is a joint of its own.
+std::vector<Tool> read_tools(const Reader& top, const DraftPoints& points, const Map& head,
+                             const Context& context);
 
 /// `watchdog:` of a map with `preset`: there it is the coupler's own, and leaves `head.service`. Without a
 /// preset it is the node's, and stays.

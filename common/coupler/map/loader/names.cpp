@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/map/joint.hpp"
 #include "coupler/map/loader/scalar.hpp"
 
 namespace coupler::loader {
@@ -36,17 +37,23 @@ const DraftPoint* stamped_by(std::string_view name, const FirstOfName& first) {
   return point != nullptr && point->point.host.stamped ? point : nullptr;
 }
 
+/// `name` is what the driver would serve.
+void warn_of_taken_place(Position at, std::string_view name, std::string_view what, std::string remedy,
+                         const Context& context) {
+  context.problems.warning(at, fmt::format("{} is also {}, and the point takes its place", shown(name), what),
+                           std::move(remedy));
+}
+
 /// Topics that came after maps had such points, which keep them.
 void warn_of_missing_topic(std::string_view name, const FirstOfName& first, Position at,
                            const Context& context) {
   const DraftPoint* sampled = before("/sample", name, first);
   const bool is_sample = sampled != nullptr && sampled->point.host.stamped;
   if (name != points_topic && !is_sample) return;
-  context.problems.warning(
-      at,
-      fmt::format("{} is also a topic of the driver, with {}, and the point takes its place", shown(name),
-                  is_sample ? "the samples of a point" : "what the map says of each point"),
-      "give the point another name if programs need that topic");
+  warn_of_taken_place(at, name,
+                      fmt::format("a topic of the driver, with {}",
+                                  is_sample ? "the samples of a point" : "what the map says of each point"),
+                      "give the point another name if programs need that topic", context);
 }
 
 /// ROS 2 takes no part of a name that begins with a digit, as in "a/1b"; ROS 1 does.
@@ -120,13 +127,32 @@ void check_point_names(const DraftPoints& points, bool has_wait_for, const Conte
   for (const DraftPoint& draft : points) {
     check_topic(draft, first, context);
     const std::string_view name = draft.point.name;
-    if (has_wait_for && name.substr(0, name.find('/')) == wait_for_action)
-      context.problems.warning(
-          draft.name_at,
-          fmt::format("'{}' is also the action that waits for values, and the point takes its place",
-                      wait_for_action),
-          "give the point another name, or leave the key 'wait_for' out");
+    if (has_wait_for && takes_place_of(name, wait_for_action))
+      warn_of_taken_place(draft.name_at, wait_for_action, "the action that waits for values",
+                          "give the point another name, or leave the key 'wait_for' out", context);
   }
+}
+
+void warn_of_tool_names(const DraftPoints& points, const std::vector<Tool>& tools, const Context& context) {
+  if (tools.empty()) return;
+  for (const Tool& tool : tools) {
+    const std::string state = fmt::format("{}/state", tool.name);
+    const std::string actions[] = {fmt::format("{}/{}", tool.name, gripper_action),
+                                   fmt::format("{}/{}", tool.name, parallel_gripper_action)};
+    const auto warn_of = [&](Position at, std::string_view name, std::string_view what) {
+      warn_of_taken_place(at, name, fmt::format("{} of the tool '{}'", what, tool.name),
+                          "give the point or the tool another name", context);
+    };
+    for (const DraftPoint& draft : points) {
+      if (draft.point.name == state) warn_of(draft.name_at, state, "the topic");
+      for (const std::string& action : actions)
+        if (takes_place_of(draft.point.name, action)) warn_of(draft.name_at, action, "an action");
+    }
+  }
+  for (const DraftPoint& draft : points)
+    if (draft.point.name == joint_states_topic)
+      warn_of_taken_place(draft.name_at, joint_states_topic, "the topic with the positions of the tools",
+                          "give the point another name if programs need that topic", context);
 }
 
 }  // namespace coupler::loader

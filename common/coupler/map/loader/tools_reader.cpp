@@ -9,6 +9,7 @@
 #include "coupler/map/loader/map_reader.hpp"
 #include "coupler/map/loader/names.hpp"
 #include "coupler/map/loader/point_names.hpp"
+#include "coupler/map/loader/tool_joints.hpp"
 
 namespace coupler::loader {
 namespace {
@@ -60,7 +61,8 @@ std::optional<Hindrance> no_sensor(const DraftPoint& draft, std::string_view key
 /// Collects the tools of a map.
 class ToolsReader {
  public:
-  ToolsReader(const DraftPoints& points, const Context& context) : names_(points), context_(context) {}
+  ToolsReader(const DraftPoints& points, const Map& head, const Context& context)
+      : names_(points), context_(context), joints_(head, context) {}
 
   void read(const Entry& entry) {
     if (!check_name(entry)) return;
@@ -75,8 +77,11 @@ class ToolsReader {
     const bool has_its_values = context_.problems.errors() == errors;
     check_outputs(reader, entry, tool);
     check_sensors(reader, entry);
-    if (has_its_values) check_times(reader, tool);
-    warn_of_point(tool.name);
+    joints_.check(reader, entry, tool);
+    if (has_its_values) {
+      check_times(reader, tool);
+      check_positions(reader, tool, context_);
+    }
     tools_.push_back(tool);
   }
 
@@ -249,25 +254,18 @@ class ToolsReader {
             "make 'settle' shorter, or 'timeout' longer");
   }
 
-  void warn_of_point(std::string_view tool) const {
-    const std::string name = fmt::format("{}/state", tool);
-    if (const DraftPoint* draft = names_.get(name))
-      context_.problems.warning(
-          draft->name_at,
-          fmt::format("'{}' is also the topic of the tool '{}', and the point takes its place", name, tool),
-          "give the point or the tool another name");
-  }
-
   PointNames names_;
   const Context& context_;
   std::vector<Tool> tools_;
   std::unordered_map<std::string_view, Position> first_;  ///< tools by name
   std::unordered_map<std::string_view, Taken> taken_;     ///< outputs by name
+  ToolJoints joints_;
 };
 
 }  // namespace
 
-std::vector<Tool> read_tools(const Reader& top, const DraftPoints& points, const Context& context) {
+std::vector<Tool> read_tools(const Reader& top, const DraftPoints& points, const Map& head,
+                             const Context& context) {
   const Entry* entry = top.find("tools");
   constexpr std::string_view example = "'tools: {clamp: {close: valve, travel: 300ms}}'";
   if (entry == nullptr ||
@@ -282,8 +280,9 @@ std::vector<Tool> read_tools(const Reader& top, const DraftPoints& points, const
         "write the others into a second map of the device, with another name");
     return {};
   }
-  ToolsReader reader(points, context);
+  ToolsReader reader(points, head, context);
   for (const Entry& tool : entry->children) reader.read(tool);
+  warn_of_tool_names(points, reader.tools(), context);
   return reader.tools();
 }
 

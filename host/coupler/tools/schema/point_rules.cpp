@@ -315,6 +315,7 @@ Rules rules_of_a_tool() {
   return {{{"anyOf", {has("close"), has("open")}}},
           {{"anyOf", {has("travel"), both_sensors}}},
           {{"dependencies", {{"empty", {"holds"}}}}},
+          only("joint", {{"pattern", R"(^[^\u0000-\u0020\u007f-\u009f]+$)"}}),
           when(has("hold", not_true()), {{"required", {"close", "open"}}})};
 }
 

@@ -29,6 +29,8 @@ constexpr Place places[] = {
     {Section::tool,
      "name: a\ntools: {b: {close: c, open: d, closed: e, opened: f, holds: g, @}}\n"
      "mapping: {coils: {c: 0, d: 1}, discrete_inputs: {e: 0, f: 1, g: 2}}\n"},
+    {Section::positions,
+     "name: a\ntools: {b: {close: c, travel: 1s, positions: {@}}}\nmapping: {coils: {c: 0}}\n"},
     {Section::edge,
      "name: a\nmapping: {discrete_inputs: {b: {address: 0, line: X}}, "
      "coils: {c: {address: 0, latched: {of: b, @}}}}\n"},

@@ -45,7 +45,8 @@ constexpr bool lists_all = fields<Struct> == members<Struct>;
 
 static_assert(lists_all<Connection> && lists_all<Serial> && lists_all<Polling> && lists_all<Limits> &&
                   lists_all<Watchdog> && lists_all<SimWire> && lists_all<Line> && lists_all<EdgeOf> &&
-                  lists_all<codec::Scale> && lists_all<Iio> && lists_all<Pwm> && lists_all<Bounds>,
+                  lists_all<JointPositions> && lists_all<codec::Scale> && lists_all<Iio> && lists_all<Pwm> &&
+                  lists_all<Bounds>,
               "A member without its key in coupler/map/fields.hpp");
 static_assert(fields<HostOptions> + 1 == members<HostOptions>, "The one more is deadman");
 static_assert(fields<Tool> + 1 == members<Tool>, "The one more is the name");
@@ -62,6 +63,7 @@ TEST(Fields, The_key_table_has_each_of_their_keys) {
   EXPECT_THAT(unknown_keys<Watchdog>(Section::watchdog), IsEmpty());
   EXPECT_THAT(unknown_keys<SimWire>(Section::wire), IsEmpty());
   EXPECT_THAT(unknown_keys<Tool>(Section::tool), IsEmpty());
+  EXPECT_THAT(unknown_keys<JointPositions>(Section::positions), IsEmpty());
   EXPECT_THAT(unknown_keys<HostOptions>(Section::defaults), IsEmpty());
   EXPECT_THAT(unknown_keys<HostOptions>(Section::holding_register), IsEmpty());
   EXPECT_THAT(unknown_keys<Bounds>(Section::holding_register), IsEmpty());

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/map/joint.hpp"
 #include "test/common/map/loader/loaded.hpp"
 
 namespace coupler {
@@ -25,7 +26,8 @@ TEST(Tools, All_that_a_map_says_of_one_is_read) {
   const MapPtr owned = with_tools(
       "  gripper: {close: grip, open: release, closed: gripped, opened: released, holds: part, travel: "
       "300ms, "
-      "timeout: 900ms, settle: 20ms, hold: false, empty: ok, direct: true}\n");
+      "timeout: 900ms, settle: 20ms, hold: false, empty: ok, direct: true, joint: finger_joint, "
+      "positions: {open: 0.04, closed: 0.01}, on_cancel: open}\n");
   ASSERT_EQ(owned->map().tools.size(), 1U);
   const Tool& tool = owned->map().tools[0];
   EXPECT_EQ(tool.name, "gripper");
@@ -40,6 +42,11 @@ TEST(Tools, All_that_a_map_says_of_one_is_read) {
   EXPECT_FALSE(tool.hold);
   EXPECT_EQ(tool.empty, OnEmpty::ok);
   EXPECT_TRUE(tool.direct);
+  EXPECT_EQ(tool.joint, "finger_joint");
+  EXPECT_EQ(joint_name(owned->map(), tool), "finger_joint");
+  EXPECT_EQ(tool.positions.open, 0.04);
+  EXPECT_EQ(tool.positions.closed, 0.01);
+  EXPECT_EQ(tool.on_cancel, OnCancel::open);
 }
 
 TEST(Tools, What_the_map_does_not_say_of_one_has_its_default) {
@@ -55,6 +62,24 @@ TEST(Tools, What_the_map_does_not_say_of_one_has_its_default) {
   EXPECT_TRUE(tool.hold);
   EXPECT_EQ(tool.empty, OnEmpty::abort);
   EXPECT_FALSE(tool.direct);
+  EXPECT_EQ(joint_name(owned->map(), tool), "cell/cup");
+  EXPECT_EQ(tool.positions, JointPositions{});
+  EXPECT_EQ(tool.on_cancel, OnCancel::stay);
+  EXPECT_EQ(owned->map().joint_rate, 10);
+}
+
+TEST(Tools, A_position_that_is_not_given_has_its_default) {
+  const MapPtr owned = with_tools("  cup: {close: suction, travel: 2s, positions: {open: 0.04}}\n");
+  EXPECT_EQ(owned->map().tools[0].positions, (JointPositions{0.04, 0}));
+}
+
+TEST(Tools, On_cancel_may_be_open_or_close_with_any_outputs) {
+  with_tools("  cup: {close: suction, travel: 1s, on_cancel: open}\n");
+  with_tools("  cup: {close: suction, travel: 1s, on_cancel: close}\n");
+}
+
+TEST(Tools, Joint_rate_is_read_and_is_allowed_without_tools) {
+  EXPECT_EQ(test::load_clean(std::string("name: cell\njoint_rate: 2.5\n") + points)->map().joint_rate, 2.5);
 }
 
 TEST(Tools, They_are_in_the_order_of_the_file) {

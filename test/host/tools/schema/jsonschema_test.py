@@ -31,7 +31,7 @@ UNSEEN = {name + ".yaml" for name in (
     "broadcast_with_tools tool_times "
     # between points, or between a point and a limit
     "overlap overlap_of_a_word_and_its_bits overlap_of_parts overlap_of_access overlap_of_inputs overlap_of_a_wired_input point_name_is_taken "
-    "names_of_later_topics tool_names_of_points tool_outputs tool_output_of_defaults tool_output_of_two tool_sensors "
+    "names_of_later_topics tool_names_of_points tool_outputs tool_output_of_defaults tool_output_of_two tool_sensors tool_joint_of_two tool_positions "
     "tool_point_is_used_twice tool_outputs_are_both_on "
     "line_in_two_points point_exceeds_the_limits unreadable_before_a_write string_is_too_long_to_write preset_area "
     # between roles and what they name

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "coupler/map/map.hpp"
+
+namespace coupler {
+
+// Names of the driver for MoveIt: a topic below the map's name, and actions below a tool's.
+constexpr std::string_view joint_states_topic = "joint_states";
+constexpr std::string_view gripper_action = "gripper_cmd";
+constexpr std::string_view parallel_gripper_action = "parallel_gripper_cmd";
+
+/// The name of a tool as a joint: "clamp_joint", or "NAME/clamp" if the map gives it none.
+inline std::string joint_name(const Map& map, const Tool& tool) {
+  if (!tool.joint.empty()) return std::string(tool.joint);
+  return std::string(map.name) + '/' + std::string(tool.name);
+}
+
+}  // namespace coupler
