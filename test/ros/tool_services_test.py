@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tools: the services open and close, their state, and who may write their outputs."""
 import unittest
-from concurrent.futures import ThreadPoolExecutor
 
 from coupler_driver.msg import ToolState
 from coupler_driver.srv import Schedule, Write
@@ -9,71 +8,12 @@ from std_msgs.msg import Bool
 from std_srvs.srv import SetBool, Trigger
 
 from support import process, testing
-from support.device import FAILURE, Device, Refuse
-from support.patience import NO_TIMEOUT, PATIENCE, wait_until
 from support.ports import free_port
 from support.times import ros_time
-
-MAP = """
-name: {name}
-address: 127.0.0.1
-rate: 50
-timeout: {timeout}s
-{head}
-mapping:
-  coils: {{valve_close: 0, valve_open: 1, vacuum: 5, lamp: 7}}
-  discrete_inputs: {{sensor_closed: 0, sensor_open: 1, part_present: 2}}
-tools:
-  clamp: {{close: valve_close, open: valve_open, closed: sensor_closed, opened: sensor_open, holds: part_present,
-           empty: ok, timeout: {patience}s{more}}}
-  cup: {{close: vacuum, travel: 100ms}}
-"""
-CLOSE, OPEN, VACUUM = 0, 1, 5
-CLOSED, OPENED, PART = 0, 1, 2
+from support.tools import CLOSE, CLOSED, OPEN, OPENED, PART, VACUUM, DeviceToolsTest, ToolsTest
 
 
-class ToolsTest(testing.RosTest):
-    at_once = True
-
-    def start(self, port, head="", timeout=NO_TIMEOUT, patience=PATIENCE, more=""):
-        self.path = process.write_map(MAP.format(name=self.name, head=head, timeout=timeout, patience=patience, more=more))
-        self.program = self.driver(f"_map:={self.path}", f"_port:={port}")
-        self.program.wait_for("connected")
-        self.calls = ThreadPoolExecutor(4)
-        self.addCleanup(self.calls.shutdown)
-
-    def call(self, name):
-        """The answer to come of a service of a tool: whether it is a success, and what it says."""
-        service = self.service(f"/{self.name}/{name}", Trigger)
-
-        def answer():
-            response = service()
-            return response.success, response.message
-        return self.calls.submit(answer)
-
-    def assert_answers(self, call, success, text):
-        succeeded, message = call.result(PATIENCE)
-        self.assertRegex(message, f"^{text}$")
-        self.assertEqual(succeeded, success)
-
-    def assert_becomes(self, tool, state):
-        return self.topic(f"/{self.name}/{tool}/state", ToolState, latched=True).wait_for(
-            lambda message: message.state == state)
-
-
-class OfADevice(ToolsTest):
-    """A foreign device, which is polled, with a cylinder that the test moves."""
-
-    def start(self, *arguments, **options):
-        self.device = Device().start()
-        self.addCleanup(self.device.stop)
-        self.coils, self.inputs = self.device.tables["coils"], self.device.tables["discrete_inputs"]
-        self.inputs[OPENED] = 1
-        super().start(self.device.port, *arguments, **options)
-
-    def becomes(self, output, level):
-        wait_until(lambda: self.coils[output] == level, f"coil {output} to be {level}")
-
+class OfADevice(DeviceToolsTest):
     def test_close_answers_when_the_tool_is_closed(self):
         self.start()
         self.coils[OPEN] = 1
@@ -137,13 +77,8 @@ class OfADevice(ToolsTest):
         self.assertEqual(self.coils[VACUUM], 0)
 
     def test_an_output_that_the_device_rejects_ends_the_call(self):
-        def answer(request):
-            if request.function == 5 and request.address == OPEN:
-                raise Refuse(FAILURE)
-            return self.device.serve(request)
-
         self.start()
-        self.device.answer = answer
+        self.reject_writes_of(OPEN)
         self.assert_answers(self.call("clamp/close"), False, "valve_open could not be switched off: exception 04 .*")
         self.assertEqual(self.coils[CLOSE], 0)
 
@@ -210,7 +145,7 @@ class OfANode(ToolsTest):
     SIM = "sim: [{from: valve_close, to: sensor_closed}, {from: valve_close, to: sensor_open, invert: true}]"
 
     def start(self, *arguments, **options):
-        path = process.write_map(MAP.format(name=self.name, head=self.SIM, timeout=NO_TIMEOUT, patience=PATIENCE, more=""))
+        path = process.write_map(self.map_text(self.SIM))
         self.node = process.Node(path, port=free_port())
         self.addCleanup(self.node.end)
         super().start(self.node.port, self.SIM, *arguments, **options)

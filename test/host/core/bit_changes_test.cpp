@@ -185,6 +185,17 @@ TEST_F(RepeatedTest, Lost_changes_make_no_longer_interval) {
   EXPECT_LE(longest_gap(topic), soon_enough);
 }
 
+TEST_F(ChangesTest, A_node_is_asked_as_often_as_the_positions_of_tools_are_published) {
+  static constexpr Tool tools[] = {{"cup", "light", {}, {}, {}, {}, milliseconds(300)}};
+  MapBuilder builder = cell();
+  builder.head().tools = tools;
+  builder.head().joint_rate = 20;
+  begin(builder);
+  run_for(seconds(1));
+  EXPECT_GE(device.count("wait 50"), 18U);
+  EXPECT_LE(device.count("wait 50"), 22U);
+}
+
 struct PolledTest : ChangesTest {
   void expect_polled() {
     run_for(seconds(1));

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "test/host/motion/sample_tools.hpp"
+#include "test/host/motion/tool_motion_test.hpp"
 
 namespace coupler::host {
 namespace {
@@ -14,41 +14,6 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using How = ToolResult::How;
 using P = ToolPart;
-
-/// Time is in milliseconds.
-struct ToolMotionTest : testing::Test {
-  static Time at(int ms) { return Time(milliseconds(ms)); }
-
-  void use(const Tool& tool) { motion.emplace(tool, at(0)); }
-  void see(int ms, ToolPart part, bool on) { motion->see(part, on, {at(ms), milliseconds(0)}, at(ms)); }
-  /// The command that is to be given: "close on"; "" if there is none.
-  std::string command() {
-    const auto given = motion->take_command();
-    if (!given) return {};
-    number = given->number;
-    return std::string(given->output == P::close ? "close" : "open") + (given->on ? " on" : " off");
-  }
-  void acknowledge(int ms) { motion->on_written(number, {}, at(ms)); }
-  /// The goal has come, and its output is driven at that time.
-  void drive(ToolEnd end, int ms) {
-    motion->begin(end, at(ms));
-    while (!command().empty()) acknowledge(ms);
-    motion->take_asked();
-  }
-  /// The result, which is the only one: "" if there is none.
-  std::string text() {
-    const auto results = motion->take_results();
-    if (results.empty()) return {};
-    EXPECT_EQ(results.size(), 1U);
-    how = results.front().how;
-    return results.front().text;
-  }
-  ToolState state() const { return motion->status().state; }
-
-  std::optional<ToolMotion> motion{std::in_place, clamp(), Time()};
-  std::uint64_t number = 0;
-  How how = How::aborted;
-};
 
 TEST_F(ToolMotionTest, An_output_goes_on_when_the_other_one_is_acknowledged_to_be_off) {
   motion->begin(ToolEnd::closed, at(0));
@@ -170,7 +135,7 @@ TEST_F(ToolMotionTest, Closed_without_a_part_fails_unless_that_is_ok) {
     see(212, P::holds, false);
     EXPECT_EQ(text(), empty == OnEmpty::ok ? "closed after 212 ms"
                                            : "closed without a part after 212 ms (valve_close is on)");
-    EXPECT_EQ(how, empty == OnEmpty::ok ? How::reached : How::aborted);
+    EXPECT_EQ(how, empty == OnEmpty::ok ? How::reached : How::stuck);
     EXPECT_EQ(state(), ToolState::closed);
   }
 }
@@ -240,6 +205,7 @@ TEST_F(ToolMotionTest, A_newer_goal_aborts_the_one_before) {
   drive(ToolEnd::closed, 0);
   motion->begin(ToolEnd::open, at(120));
   EXPECT_EQ(text(), "replaced by a newer goal after 120 ms");
+  EXPECT_EQ(how, How::replaced);
   EXPECT_EQ(command(), "close off");
   acknowledge(125);
   EXPECT_EQ(command(), "open on");

@@ -24,7 +24,8 @@ enum class Fault {
   other_end_always_seen,
   bounces,
   offline,
-  foreign
+  foreign,
+  cancelled  ///< before it can be at its end
 };
 
 Time at(int ms) { return Time(milliseconds(ms)); }
@@ -38,11 +39,12 @@ struct Case {
     if (pick(0, 3) != 0) tool.opened = "opened";
     if (pick(0, 2) == 0) tool.holds = "holds";
     tool.timeout = milliseconds(800);
-    fault = static_cast<Fault>(pick(0, 7));
+    fault = static_cast<Fault>(pick(0, 8));
     if (tool.closed.empty() || tool.opened.empty()) tool.travel = milliseconds(travel + 60);
     if (fault == Fault::bounces) tool.settle = milliseconds(15);
     tool.empty = pick(0, 1) == 0 ? OnEmpty::ok : OnEmpty::abort;
     tool.hold = pick(0, 2) != 0;
+    tool.on_cancel = static_cast<OnCancel>(pick(0, 2));
     end = pick(0, 1) == 0 ? ToolEnd::open : ToolEnd::closed;
     has_part = end == ToolEnd::closed && !tool.holds.empty() && pick(0, 1) == 0;
     position = end == ToolEnd::closed ? 0 : travel;
@@ -63,6 +65,7 @@ struct Case {
   /// The beginning of what is to be said.
   std::string truth() const {
     if (fault == Fault::offline) return "the connection to the device was lost";
+    if (fault == Fault::cancelled) return "cancelled after";
     if (fault == Fault::foreign) return fmt::format("{} was switched", driven());
     const bool stays_seen = fault == Fault::jams_at_end || fault == Fault::other_end_always_seen;
     if (stays_seen && has_other_end())
@@ -118,7 +121,10 @@ struct Case {
 class Simulation {
  public:
   explicit Simulation(unsigned seed)
-      : case_(seed), motion_(case_.tool, at(0)), period_(case_.pick(0, 1) == 0 ? 0 : case_.pick(3, 40)) {}
+      : case_(seed),
+        motion_(case_.tool, at(0)),
+        period_(case_.pick(0, 1) == 0 ? 0 : case_.pick(3, 40)),
+        cancelled_at_(case_.pick(2, 40)) {}
 
   ToolResult result() {
     see_all(0);
@@ -138,8 +144,9 @@ class Simulation {
     const int before = case_.position;
     case_.move();
     if (case_.position != before) case_.bounced_until = now_ + 10;
-    if (now_ == 60 && case_.fault == Fault::offline) motion_.go_offline(at(now_));
-    if (now_ == 60 && case_.fault == Fault::foreign) {
+    if (now_ == 45 && case_.fault == Fault::offline) motion_.go_offline(at(now_));
+    if (now_ == cancelled_at_ && case_.fault == Fault::cancelled) motion_.cancel(at(now_));
+    if (now_ == 45 && case_.fault == Fault::foreign) {
       bool& output = case_.driven() == "open" ? case_.open : case_.close;
       output = !output;
     }
@@ -179,6 +186,7 @@ class Simulation {
   Case case_;
   ToolMotion motion_;
   int period_;  ///< of polling; 0: the device announces changes
+  int cancelled_at_;
   int now_ = 0;
   std::array<bool, tool_parts> seen_{};
   std::optional<ToolMotion::Command> sent_;

@@ -165,6 +165,72 @@ TEST_F(ToolsTest, After_the_end_a_goal_is_aborted) {
   EXPECT_THAT(writes, IsEmpty());
 }
 
+TEST_F(ToolsTest, Only_a_goal_that_runs_is_cancelled_and_only_by_its_sender) {
+  const auto send = [this](GoalKey key) {
+    tools.begin(
+        1, ToolEnd::closed, now(), [this](const ToolResult& result) { results.push_back(result.text); }, key);
+  };
+  const int one = 1;
+  const int other = 2;
+  send({&one, 7});
+  send({&one, 8});
+  tools.cancel(1, {&one, 7}, now());
+  tools.cancel(1, {&other, 8}, now());
+  tools.step(now());
+  EXPECT_THAT(results, ElementsAre(StartsWith("replaced by a newer goal")));
+  results.clear();
+  acknowledge();
+  tools.cancel(1, {&one, 8}, now());
+  tools.step(now());
+  EXPECT_THAT(results, ElementsAre(StartsWith("cancelled after")));
+  tools.cancel(1, {&one, 8}, now());
+  tools.step(now());
+  EXPECT_EQ(results.size(), 1U);
+}
+
+TEST_F(ToolsTest, A_position_is_known_as_long_as_all_of_its_inputs_are) {
+  EXPECT_FALSE(tools.position(0, now()));
+  read(Table::discrete_inputs, 0, "sensor_closed", false);
+  EXPECT_FALSE(tools.position(0, now()));
+  const Time before = now();
+  read(Table::discrete_inputs, 1, "sensor_open", true);
+  const auto first = tools.position(0, now());
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->position, 1);
+  EXPECT_LE(first->at, before) << "the other input was read before";
+  read(Table::discrete_inputs, 0, "sensor_closed", false);
+  EXPECT_GE(tools.position(0, now())->at, before);
+  EXPECT_FALSE(tools.position(0, now() + std::chrono::hours(1))) << "nothing new has come";
+  tools.on_gap(now());
+  EXPECT_FALSE(tools.position(0, now()));
+}
+
+TEST_F(ToolsTest, A_position_has_no_newer_stamp_than_the_value_that_it_comes_from) {
+  read(Table::discrete_inputs, 0, "sensor_closed", false);
+  read(Table::discrete_inputs, 1, "sensor_open", true);
+  const Time before = now();
+  const std::uint16_t off = 0;
+  values.store({Table::discrete_inputs, modbus::Range::of(1, 1), {index("sensor_open")}}, {&off, 1},
+               {now(), {}}, now());
+  read(Table::discrete_inputs, 0, "sensor_closed", false);
+  const auto known = tools.position(0, now());  // of the new value nobody has told the tools yet
+  ASSERT_TRUE(known);
+  EXPECT_EQ(known->position, 1);
+  EXPECT_LE(known->at, before);
+}
+
+TEST_F(ToolsTest, A_tool_without_inputs_is_in_the_middle_until_it_has_moved) {
+  EXPECT_EQ(tools.position(1, now())->position, 0.5);
+  begin(1, ToolEnd::closed);
+  tools.step(now());
+  acknowledge();
+  tools.step(now() + milliseconds(301));
+  EXPECT_EQ(results.size(), 1U);
+  EXPECT_EQ(tools.position(1, now())->position, 0);
+  tools.on_online(false, now());
+  EXPECT_FALSE(tools.position(1, now()));
+}
+
 TEST_F(ToolsTest, A_state_is_shown_at_first_and_when_it_has_changed) {
   tools.step(now());
   EXPECT_THAT(shown, ElementsAre(std::pair(0U, ToolState::unknown), std::pair(1U, ToolState::unknown)));

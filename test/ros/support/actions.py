@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The action coupler_driver/WaitFor by the action client of either ROS: actionlib's or rclpy's."""
+"""Actions by the action client of either ROS: actionlib's or rclpy's."""
 import os
 
 from support.patience import PATIENCE, wait_until
@@ -7,6 +7,7 @@ from support.times import ros_duration, ros_time
 
 SUCCEEDED, ABORTED, CANCELED = "succeeded", "aborted", "canceled"
 IS_ROS2 = os.environ.get("ROS_VERSION") == "2"
+REPLACED = ABORTED if IS_ROS2 else CANCELED  # by a newer goal
 
 # pylint: disable=import-outside-toplevel,import-error,no-name-in-module
 if IS_ROS2:
@@ -20,7 +21,8 @@ if IS_ROS2:
         """A goal that was sent."""
 
         def __init__(self, client, goal):
-            self._accepted = client.send_goal_async(goal)
+            self.feedback = []
+            self._accepted = client.send_goal_async(goal, lambda message: self.feedback.append(message.feedback))
             wait_until(self._accepted.done, "the answer to a goal")
             self.is_accepted = self._accepted.result().accepted
             self._result = self._accepted.result().get_result_async()
@@ -39,27 +41,27 @@ if IS_ROS2:
             answer = self._result.result()
             return words[answer.status], answer.result
 
-    Goal = WaitFor.Goal
+    def goal_of(action):
+        return action.Goal()
 
     def _topics():
         return spun.get_topic_names_and_types()
 
-    def _client(name):
-        client = made_by_thread(lambda: ActionClient(spun, WaitFor, name))
+    def _client(name, action):
+        client = made_by_thread(lambda: ActionClient(spun, action, name))
         wait_until(lambda: client.wait_for_server(0.1), f"the action {name}")
         return client
 
-    def _send(client, goal):
-        return _Sent(client, goal)
 else:
     import actionlib
     from actionlib import CommState, TerminalState
-    from coupler_driver.msg import WaitForAction, WaitForGoal
+    from coupler_driver.msg import WaitForAction as WaitFor
     import rospy
 
     class _Sent:
         def __init__(self, client, goal):
-            self._handle = client.send_goal(goal)
+            self.feedback = []
+            self._handle = client.send_goal(goal, feedback_cb=lambda _, feedback: self.feedback.append(feedback))
             # A goal that is canceled before is lost for actionlib's client.
             wait_until(lambda: self._handle.get_comm_state() != CommState.WAITING_FOR_GOAL_ACK, "the answer to a goal")
 
@@ -76,18 +78,16 @@ else:
                      TerminalState.PREEMPTED: CANCELED}
             return words[self._handle.get_terminal_state()], self._handle.get_result()
 
-    Goal = WaitForGoal
+    def goal_of(action):
+        return action().action_goal.goal
 
     def _topics():
         return rospy.get_published_topics()
 
-    def _client(name):
-        client = actionlib.ActionClient(name, WaitForAction)
+    def _client(name, action):
+        client = actionlib.ActionClient(name, action)
         wait_until(lambda: client.wait_for_server(rospy.Duration(0.1)), f"the action {name}")
         return client
-
-    def _send(client, goal):
-        return _Sent(client, goal)
 
 
 def topics_below(name):
@@ -102,14 +102,28 @@ class Sent(_Sent):
         return self._ending
 
 
-class WaitForClient:
+class Client:
+    """Of an action: the class of ROS 2's action, or of ROS 1's action message."""
+
+    def __init__(self, name, action):
+        self._client = _client(name, action)
+        self._action = action
+
+    def goal(self):
+        return goal_of(self._action)
+
+    def send_goal(self, goal):
+        return Sent(self._client, goal)
+
+
+class WaitForClient(Client):
     def __init__(self, name):
-        self._client = _client(name)
+        super().__init__(name, WaitFor)
 
     def send(self, point, condition, value="", *, timeout=PATIENCE, for_at_least=0, since=None):
-        goal = Goal()
+        goal = self.goal()
         goal.point, goal.condition, goal.value = point, condition, value
         goal.timeout, goal.for_at_least = ros_duration(timeout), ros_duration(for_at_least)
         if since is not None:
             goal.since = ros_time(since)
-        return Sent(self._client, goal)
+        return self.send_goal(goal)

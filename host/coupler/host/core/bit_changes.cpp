@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "coupler/host/core/poll_deadlines.hpp"
 #include "coupler/map/functions.hpp"
 #include "coupler/plan/planner.hpp"
 
 namespace coupler::host {
 namespace {
+
+/// An idle node is asked no more often than this, even if joint_rate is higher.
+constexpr std::chrono::milliseconds shortest_joint_period(10);
 
 std::uint32_t place(std::uint8_t function, std::uint16_t address) {
   return std::uint32_t{function} << 16 | address;
@@ -171,11 +175,12 @@ void BitChanges::on_heard(std::uint64_t newest, std::optional<Stamp> stamp) {
   newest_ = newest;
   more_follow_ = !stamp;
   if (!stamp) return leave_out_older_than_writes();
-  values_.heard(stamp->at);
   for (Told& told : points_) {
     show_pending(told);
     if (std::exchange(told.left_out, false)) cycle_.read_soon(told.point);
   }
+  values_.heard(stamp->at);
+  heard_ = stamp->at;
   for (Told& told : points_)
     if (repeats(told) && repeat_at(told) <= stamp->at && !writer_.hides(told.point)) show(told, *stamp);
 }
@@ -199,6 +204,8 @@ void BitChanges::on_end() {
 
 Time BitChanges::answer_wanted() {
   Time wanted = Time::max();
+  if (!map_.tools.empty())  // the stamps of joint positions are the times of answers
+    wanted = heard_ + std::max<Duration>(period_of(map_.joint_rate), shortest_joint_period);
   for (Told& told : points_)
     if (repeats(told)) wanted = std::min(wanted, repeat_at(told));
   return wanted;

@@ -90,6 +90,7 @@ class BitChanges : public ChangeSink {
   std::vector<std::uint16_t> bits_;
   bool active_ = false;
   std::uint64_t newest_ = 0;  ///< the number of the node's newest change, as of its last answer
+  Time heard_{};              ///< the time of that answer
   bool more_follow_ = false;  ///< changes up to newest_ are still to come
   ReadSpan one_{Table::coils, modbus::Range::of(0, 1), {}};  ///< a member, so that its memory is used again
 };

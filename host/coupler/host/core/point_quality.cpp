@@ -46,16 +46,19 @@ PointQuality ValueTable::quality_of(const Entry& entry, Time now) const {
   const State state = state_of(entry, now);
   const bool becomes_stale = (state == State::good || PointQuality::is_unusable(state)) && !entry.told;
   const Time stale_from = becomes_stale ? *entry.last_good + entry.stale_after : Time::max();
-  const bool was_true_then =
-      entry.told && entry.last_good && (state == State::good || state == State::offline);
-  const auto last_good = was_true_then ? std::max(*entry.last_good, heard_) : entry.last_good;
   return {state,
           stale_from,
-          last_good,
+          last_good_of(entry, state),
           entry.last_exception,
           PointQuality::is_unusable(state) ? why_unusable(entry, now) : entry.why,
           entry.last_write,
           entry.last_write_text};
+}
+
+std::optional<Time> ValueTable::last_good_of(const Entry& entry, State state) const {
+  const bool was_true_when_heard =
+      entry.told && entry.last_good && (state == State::good || state == State::offline);
+  return was_true_when_heard ? std::max(*entry.last_good, heard_) : entry.last_good;
 }
 
 std::string ValueTable::why_unusable(const Entry& entry, Time now) const {
@@ -82,6 +85,13 @@ std::vector<PointQuality> ValueTable::qualities(Time now) const {
 PointQuality ValueTable::quality(std::uint32_t point, Time now) const {
   const std::lock_guard lock(mutex_);
   return quality_of(entries_[point], now);
+}
+
+ValueTable::Freshness ValueTable::freshness(std::uint32_t point, Time now) const {
+  const std::lock_guard lock(mutex_);
+  const Entry& entry = entries_[point];
+  const State state = state_of(entry, now);
+  return {state, last_good_of(entry, state), entry.number};
 }
 
 PointQuality::State ValueTable::state_when_online(std::uint32_t point, Time now) const {

@@ -105,6 +105,13 @@ class ValueTable {
   /// Returns the quality of each point at the time `now`. Points that can only be written stay never_read.
   std::vector<PointQuality> qualities(Time now) const;
   PointQuality quality(std::uint32_t point, Time now) const;
+  /// A part of get() that needs no memory.
+  struct Freshness {
+    PointQuality::State state;
+    std::optional<Time> last_good;
+    std::uint64_t number;
+  };
+  Freshness freshness(std::uint32_t point, Time now) const;
   /// The state that the point has while the device is online.
   PointQuality::State state_when_online(std::uint32_t point, Time now) const;
   /// A number that changes with each state, exception and write in qualities(), but neither by the mere
@@ -161,6 +168,7 @@ class ValueTable {
   bool is_since(const Entry& entry, Time since) const;
   void notify();
   PointQuality quality_of(const Entry& entry, Time now) const;
+  std::optional<Time> last_good_of(const Entry& entry, PointQuality::State state) const;
   PointQuality::State state_of(const Entry& entry, Time now) const;
   PointQuality::State read_state(const Entry& entry, Time now) const;
   std::string why_unusable(const Entry& entry, Time now) const;

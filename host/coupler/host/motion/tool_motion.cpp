@@ -10,13 +10,6 @@
 namespace coupler::host {
 namespace {
 
-using How = ToolResult::How;
-
-constexpr std::array<ToolPart, 3> inputs{ToolPart::closed, ToolPart::opened, ToolPart::holds};
-
-ToolPart input_of(ToolEnd end) { return end == ToolEnd::closed ? ToolPart::closed : ToolPart::opened; }
-ToolPart output_of(ToolEnd end) { return end == ToolEnd::closed ? ToolPart::close : ToolPart::open; }
-ToolEnd other(ToolEnd end) { return end == ToolEnd::closed ? ToolEnd::open : ToolEnd::closed; }
 bool is_output(ToolPart part) { return part == ToolPart::close || part == ToolPart::open; }
 std::string_view word(bool on) { return on ? "on" : "off"; }
 
@@ -36,16 +29,21 @@ std::string_view point_of(const Tool& tool, ToolPart part) {
 /// The output that moves the tool, and how.
 ToolMotion::Command ToolMotion::motive() const {
   if (has(output_of(goal_))) return {0, output_of(goal_), true};
-  return {0, output_of(other(goal_)), false};
+  return {0, output_of(other_end(goal_)), false};
 }
 
 void ToolMotion::begin(ToolEnd end, Time now) {
-  abort("replaced by a newer goal " + after(now), now);
+  abort(How::replaced, "replaced by a newer goal " + after(now), now);
+  has_goal_ = true;
+  start(end, now);
+}
+
+void ToolMotion::start(ToolEnd end, Time now) {
   goal_ = end;
   since_ = now;
-  rest_.reset();
+  has_driven_ = false;
   driven_ = {};
-  if (const ToolPart partner = output_of(other(end)); motive().on && has(partner))
+  if (const ToolPart partner = output_of(other_end(end)); motive().on && has(partner))
     send(partner, false, Phase::releasing);
   else
     drive();
@@ -64,17 +62,35 @@ void ToolMotion::drive() {
   send(next.output, next.on, Phase::driving);
 }
 
-void ToolMotion::abort(const std::string& why, Time now) {
+void ToolMotion::cancel(Time now) {
+  if (!has_goal_ || is_cancelled_ || phase_ == Phase::letting_go) return;
+  is_cancelled_ = true;
+  result_ = {How::cancelled, "cancelled " + after(now)};
+  if (tool_.on_cancel == OnCancel::stay) {
+    // A command that is on its way cannot be taken back.
+    if (std::exchange(is_given_, true) && phase_ != Phase::moving)
+      phase_ = Phase::stopping;
+    else
+      finish(now);
+    return;
+  }
+  const ToolEnd end = tool_.on_cancel == OnCancel::open ? ToolEnd::open : ToolEnd::closed;
+  if (goal_ != end) return start(end, now);
+  if (phase_ == Phase::moving) give_result();
+}
+
+/// A command that has not been taken yet is dropped.
+void ToolMotion::abort(How how, const std::string& why, Time now) {
   if (phase_ == Phase::idle) return;
   is_given_ = true;
-  result_ = {How::aborted, why};
+  result_ = {how, why};
   finish(now);
 }
 
 void ToolMotion::disturb(const std::string& why, Time now) {
   driven_ = {};
   rest_.reset();
-  abort(why, now);
+  abort(How::aborted, why, now);
   update(now, {});
 }
 
@@ -116,14 +132,16 @@ void ToolMotion::on_written(std::uint64_t number, const std::string& failure, Ti
   if (!failure.empty()) {
     const std::string switched =
         fmt::format("{} could not be switched {}: {}", name(last_.output), word(last_.on), failure);
-    return abort(phase_ == Phase::letting_go ? fmt::format("{}, but {}", result_.text, switched) : switched,
+    return abort(How::aborted,
+                 phase_ == Phase::letting_go ? fmt::format("{}, but {}", result_.text, switched) : switched,
                  now);
   }
   driven(last_.output) = Driven{last_.on, now};
-  if (phase_ == Phase::letting_go) return finish(now);
+  if (phase_ == Phase::letting_go || phase_ == Phase::stopping) return finish(now);
   if (phase_ == Phase::releasing) return drive();
   phase_ = Phase::moving;
   since_ = now;
+  if (is_cancelled_) give_result();
   for (Level& each : levels_) each.asked = false;
   look(now);
 }
@@ -160,13 +178,13 @@ bool ToolMotion::is_without_part() const {
 
 /// Its inputs say that it is where the goal has led to.
 bool ToolMotion::is_there() const {
-  if (is_on(input_of(other(goal_)))) return false;
+  if (is_on(input_of(other_end(goal_)))) return false;
   return is_on(input_of(goal_)) || (counts(ToolPart::holds) && is_on(ToolPart::holds));
 }
 
 /// Returns whether the motion has ended, with which arrive() has dealt then.
 bool ToolMotion::ends(Time now) {
-  const bool has_left = is_seen_off(input_of(other(goal_)));
+  const bool has_left = is_seen_off(input_of(other_end(goal_)));
   const bool may_hold = counts(ToolPart::holds);
   const bool timed = !has(input_of(goal_));
   const std::optional<ToolState> rest =
@@ -174,14 +192,14 @@ bool ToolMotion::ends(Time now) {
   if (has_left && may_hold && is_seen_on(ToolPart::holds))
     arrive(How::holds, "holds a part " + after(now), rest, now);
   else if (has_left && is_at_end(now) && may_hold && is_without_part() && tool_.empty == OnEmpty::abort)
-    arrive(How::aborted, "closed without a part " + after(now), rest, now);
+    arrive(How::stuck, "closed without a part " + after(now), rest, now);
   else if (has_left && is_at_end(now) && (!may_hold || is_without_part()))
     arrive(How::reached,
            fmt::format("{} {}{}", goal_ == ToolEnd::closed ? "closed" : "open", after(now),
                        timed ? ", its travel time" : ""),
            rest, now);
   else if (now - since_ >= tool_.timeout)
-    arrive(How::aborted, fmt::format("{} {}", why_stuck(), after(now)),
+    arrive(How::stuck, fmt::format("{} {}", why_stuck(), after(now)),
            is_contradictory() ? std::nullopt : std::optional(ToolState::stuck), now);
   else
     return false;
@@ -193,25 +211,11 @@ void ToolMotion::look(Time now) {
   if (phase_ != Phase::moving || !ends(now)) update(now, {});
 }
 
-/// "stuck: neither end", which a time follows.
-std::string ToolMotion::why_stuck() const {
-  for (const ToolPart input : inputs)
-    if (counts(input) && !is_since_driven(input))
-      return fmt::format("stuck: no new value of {}", name(input));
-  if (is_contradictory()) return reason_of(ToolState::contradictory);
-  if (const ToolPart back = input_of(other(goal_)); is_on(back))
-    return fmt::format("stuck: {} is still on", name(back));
-  for (const ToolPart input : {input_of(goal_), ToolPart::holds})
-    if (counts(input) && is_on(input) && !is_seen_on(input))
-      return fmt::format("stuck: {} has not settled", name(input));
-  return "stuck: neither end";
-}
-
 /// The motion has ended.
 void ToolMotion::arrive(How how, std::string text, std::optional<ToolState> rest, Time now) {
   const Command last = motive();
   const bool lets_go = last.on && !tool_.hold;
-  if (how == How::aborted && !lets_go) text += fmt::format(" ({} is {})", name(last.output), word(last.on));
+  if (how == How::stuck && !lets_go) text += fmt::format(" ({} is {})", name(last.output), word(last.on));
   result_ = {how, std::move(text)};
   rest_ = rest;
   if (!lets_go) return finish(now);
@@ -220,39 +224,14 @@ void ToolMotion::arrive(How how, std::string text, std::optional<ToolState> rest
 
 void ToolMotion::finish(Time now) {
   phase_ = Phase::idle;
+  const std::string text = result_.text;
+  if (has_goal_) give_result();
+  update(now, text);
+}
+
+void ToolMotion::give_result() {
   results_.push_back(std::exchange(result_, {}));
-  update(now, results_.back().text);
-}
-
-ToolState ToolMotion::state() const {
-  if (phase_ != Phase::idle) return goal_ == ToolEnd::closed ? ToolState::closing : ToolState::opening;
-  if (rest_ == ToolState::stuck) return ToolState::stuck;
-  if (is_contradictory()) return ToolState::contradictory;
-  if (is_on(ToolPart::opened)) return ToolState::open;
-  if (is_on(ToolPart::holds) && rest_ != ToolState::open) return ToolState::holding;
-  if (is_on(ToolPart::closed)) return ToolState::closed;
-  return rest_.value_or(ToolState::unknown);
-}
-
-std::string ToolMotion::reason_of(ToolState state) const {
-  if (state == ToolState::contradictory)
-    return fmt::format("{} and {} are both on", name(ToolPart::closed), name(ToolPart::opened));
-  if (state != ToolState::unknown) return {};
-  for (const ToolPart input : inputs)
-    if (has(input) && !level(input).known) return fmt::format("no value of {}", name(input));
-  return has(ToolPart::closed) || has(ToolPart::opened) ? "no input says that it is at an end"
-                                                        : "it has no input that says where it is";
-}
-
-void ToolMotion::update(Time now, const std::string& reason) {
-  const ToolState is = state();
-  const bool stays = is == status_.state;
-  if (stays && reason.empty() && (is != ToolState::unknown || is_reason_of_goal_)) return;
-  std::string why = reason.empty() ? reason_of(is) : reason;
-  is_reason_of_goal_ = !reason.empty();
-  if (stays && why == status_.reason) return;
-  status_ = {is, stays ? status_.since : now, std::move(why)};
-  is_status_new_ = true;
+  has_goal_ = is_cancelled_ = false;
 }
 
 Time ToolMotion::step(Time now) {
@@ -267,7 +246,7 @@ Time ToolMotion::step(Time now) {
 /// been before the motion.
 Time ToolMotion::ask(Time now) {
   Time next = Time::max();
-  for (const ToolPart input : inputs) {
+  for (const ToolPart input : tool_inputs) {
     Level& seen = level(input);
     Time due = Time::min();
     if (is_on(input))
@@ -285,13 +264,16 @@ Time ToolMotion::ask(Time now) {
   return next;
 }
 
-/// "after 212 ms"
+/// "after 212 ms". `now` may be before since_: a goal may arrive just before the last command of the goal
+/// that it replaces is acknowledged.
 std::string ToolMotion::after(Time now) const {
-  return fmt::format("after {} ms", std::chrono::round<std::chrono::milliseconds>(now - since_).count());
+  const Duration passed = std::max(now - since_, Duration::zero());
+  return fmt::format("after {} ms", std::chrono::round<std::chrono::milliseconds>(passed).count());
 }
 
 std::optional<ToolMotion::Command> ToolMotion::take_command() {
   if (std::exchange(is_given_, true)) return std::nullopt;
+  if (!std::exchange(has_driven_, true)) rest_.reset();  // until then the tool has not moved
   return last_;
 }
 std::vector<ToolPart> ToolMotion::take_asked() { return std::exchange(asked_, {}); }

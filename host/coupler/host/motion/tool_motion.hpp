@@ -17,10 +17,18 @@ namespace coupler::host {
 /// The points of a tool, each a bit. The first two are outputs, the others inputs.
 enum class ToolPart : std::uint8_t { close, open, closed, opened, holds };
 constexpr std::size_t tool_parts = 5;
+constexpr std::array<ToolPart, 3> tool_inputs{ToolPart::closed, ToolPart::opened, ToolPart::holds};
 /// The name of the point; empty: the tool does not have it.
 std::string_view point_of(const Tool& tool, ToolPart part);
 
 enum class ToolEnd : std::uint8_t { open, closed };
+constexpr ToolEnd other_end(ToolEnd end) { return end == ToolEnd::closed ? ToolEnd::open : ToolEnd::closed; }
+constexpr ToolPart input_of(ToolEnd end) {
+  return end == ToolEnd::closed ? ToolPart::closed : ToolPart::opened;
+}
+constexpr ToolPart output_of(ToolEnd end) {
+  return end == ToolEnd::closed ? ToolPart::close : ToolPart::open;
+}
 
 enum class ToolState : std::uint8_t {
   unknown,
@@ -35,9 +43,19 @@ enum class ToolState : std::uint8_t {
 
 /// How a goal has ended.
 struct ToolResult {
-  enum class How : std::uint8_t { reached, holds, aborted };
+  enum class How : std::uint8_t {
+    reached,
+    holds,     ///< it holds a part
+    stuck,     ///< at neither end in time, or at its closed end without the part
+    aborted,   ///< something else ended it
+    replaced,  ///< a newer goal did
+    cancelled
+  };
   How how = How::aborted;
-  std::string text;  ///< "closed after 212 ms"; of aborted: why
+  std::string text;                  ///< "closed after 212 ms"; of aborted: why
+  std::optional<double> position{};  ///< of the tool then; empty if unknown. Tools sets it
+
+  bool is_success() const { return how == How::reached || how == How::holds; }
 };
 
 struct ToolStatus {
@@ -61,8 +79,11 @@ class ToolMotion {
   /// The storage of the tool must outlive it.
   ToolMotion(const Tool& tool, Time now) : tool_(tool), status_{ToolState::unknown, now, {}} {}
 
-  /// Begins a goal. One that has not ended yet is aborted.
+  /// Begins a goal. It replaces one that has not ended yet.
   void begin(ToolEnd end, Time now);
+  /// Cancels the goal, if there is one: the tool does what Tool::on_cancel says, and the goal ends when the
+  /// device has acknowledged the last command. A goal that has already reached its end keeps its result.
+  void cancel(Time now);
   /// Somebody else drives its outputs: aborts the goal, if there is one. Where no input says where the tool
   /// is, that is not known any more.
   void disturb(const std::string& why, Time now);
@@ -85,16 +106,25 @@ class ToolMotion {
   /// Takes the results of the goals that have ended, in their order.
   std::vector<ToolResult> take_results();
   const ToolStatus& status() const { return status_; }
-  /// The same, if it is not what the last call gave.
+  /// Returns whether the part has a value.
+  bool knows(ToolPart part) const { return level(part).known; }
+  /// Returns the joint position; call it only while the inputs have good values. The middle if nothing shows
+  /// that the tool is at an end; nothing if the inputs contradict each other.
+  std::optional<double> position() const;
+  /// Returns when the tool reached its position; Time::min() if the inputs alone show where it is.
+  Time there_since() const;
+  /// The status, if it is not what the last call gave.
   std::optional<ToolStatus> take_status();
 
  private:
+  using How = ToolResult::How;
   enum class Phase : std::uint8_t {
     idle,
     releasing,  ///< the other output is switched off
     driving,    ///< the output is switched
     moving,
-    letting_go  ///< the output is switched off at the end
+    letting_go,  ///< the output is switched off at the end
+    stopping     ///< its goal was cancelled while a command was on its way
   };
   struct Level {
     bool known = false;
@@ -124,7 +154,8 @@ class ToolMotion {
   bool is_since_driven(ToolPart input) const;
   bool is_seen_on(ToolPart input) const;
   bool is_seen_off(ToolPart input) const;
-  void abort(const std::string& why, Time now);
+  void start(ToolEnd end, Time now);
+  void abort(How how, const std::string& why, Time now);
   void send(ToolPart output, bool on, Phase phase);
   void drive();
   void check_output(ToolPart output, bool on, const Stamp& stamp, Time now);
@@ -135,8 +166,9 @@ class ToolMotion {
   bool is_without_part() const;
   bool is_there() const;
   std::string why_stuck() const;
-  void arrive(ToolResult::How how, std::string text, std::optional<ToolState> rest, Time now);
+  void arrive(How how, std::string text, std::optional<ToolState> rest, Time now);
   void finish(Time now);
+  void give_result();
   ToolState state() const;
   std::string reason_of(ToolState state) const;
   void update(Time now, const std::string& reason);
@@ -149,10 +181,13 @@ class ToolMotion {
   Phase phase_ = Phase::idle;
   ToolEnd goal_ = ToolEnd::open;
   Time since_{};                   ///< the goal came, or its output was switched
-  ToolResult result_;              ///< of the goal, while it lets go
+  bool has_goal_ = false;          ///< it has no result yet; a tool may move on after a cancelled one
+  bool is_cancelled_ = false;      ///< the goal
+  ToolResult result_;              ///< of the goal, as far as that is known
   std::optional<ToolState> rest_;  ///< where the last goal ended, as far as no input says so
   Command last_;                   ///< the last command
   bool is_given_ = true;           ///< it has been given
+  bool has_driven_ = false;        ///< a command of the last goal has been given
   std::vector<ToolPart> asked_;    ///< not given yet
   std::vector<ToolResult> results_;
   ToolStatus status_;

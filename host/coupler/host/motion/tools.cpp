@@ -30,18 +30,64 @@ Tools::Tools(const Map& map, const ValueTable& values, Time now, Calls calls)
   }
 }
 
-void Tools::begin(std::size_t tool, ToolEnd end, Time now, const Done& done) {
+void Tools::begin(std::size_t tool, ToolEnd end, Time now, const Done& done, GoalKey key) {
   std::string ended;
   {
     const std::lock_guard lock(mutex_);
     ended = end_reason_;
     if (ended.empty()) {
-      running_[tool].goals.push_back(done);
+      running_[tool].goals.push_back({key, done});
       running_[tool].motion.begin(end, now);
     }
   }
   if (!ended.empty()) return done({ToolResult::How::aborted, ended});
   calls_.wake();
+}
+
+void Tools::cancel(std::size_t tool, GoalKey key, Time now) {
+  {
+    const std::scoped_lock lock(writing_, mutex_);
+    Running& running = running_[tool];
+    if (running.goals.empty()) return;
+    // The others have ended: they wait for step() to give their results.
+    const GoalKey& last = running.goals.back().key;
+    if (last.sender != key.sender || last.number != key.number) return;
+    running.motion.cancel(now);
+  }
+  calls_.wake();
+}
+
+std::optional<JointPosition> Tools::position(std::size_t tool, Time now) {
+  const std::lock_guard lock(mutex_);
+  return position_of(tool, now);
+}
+
+std::optional<JointPosition> Tools::position_of(std::size_t tool, Time now) const {
+  const Running& running = running_[tool];
+  const std::optional<double> position = running.motion.position();
+  if (!position || !is_online_) return std::nullopt;
+  std::optional<Time> at;
+  for (const ToolPart input : tool_inputs) {
+    if (point_of(map_.tools[tool], input).empty()) continue;
+    const auto known = known_at(running, input, now);
+    if (!known) return std::nullopt;
+    at = std::min(*known, at.value_or(*known));
+  }
+  if (!at)  // no inputs: the device still has the outputs as the tool has set them
+    for (const ToolPart output : {ToolPart::close, ToolPart::open})
+      if (!point_of(map_.tools[tool], output).empty())
+        if (const auto known = known_at(running, output, now)) at = std::min(*known, at.value_or(*known));
+  return JointPosition{*position, std::max(at.value_or(now), running.motion.there_since())};
+}
+
+/// Returns the latest time at which the part is known to have had the value that the motion has seen, or
+/// nothing if it has no good value. The table may already hold a newer value.
+std::optional<Time> Tools::known_at(const Running& running, ToolPart part, Time now) const {
+  const ValueTable::Freshness fresh = values_.freshness(running.point(part), now);
+  if (fresh.state != PointQuality::State::good || !fresh.last_good || !running.motion.knows(part))
+    return std::nullopt;
+  const Seen& seen = running.seen[static_cast<std::size_t>(part)];
+  return fresh.number == seen.number ? *fresh.last_good : seen.at;
 }
 
 void Tools::disturb(std::uint32_t point, const std::string& why, Time now) {
@@ -111,7 +157,8 @@ void Tools::take(std::size_t tool, Time now, Work& work) {
   for (const ToolPart input : running.motion.take_asked()) work.asked.push_back(running.point(input));
   if (const auto status = running.motion.take_status()) work.shown.emplace_back(tool, *status);
   for (ToolResult& result : running.motion.take_results()) {
-    work.results.emplace_back(std::move(running.goals.front()), std::move(result));
+    if (const auto known = position_of(tool, now)) result.position = known->position;
+    work.results.emplace_back(std::move(running.goals.front().done), std::move(result));
     running.goals.erase(running.goals.begin());
   }
 }
@@ -124,27 +171,29 @@ void Tools::on_result(Sent& sent, const WriteResult& result) {
   if (!sent.failure->empty()) sent.failure = to_string(result);  // last: there may be no memory for it
 }
 
-/// change(motion, part, point) returns whether step() is to be called.
+/// change(running, part, point) returns whether step() is to be called.
 template <class Change>
 void Tools::each_place(Span<const std::uint32_t> points, Change change) {
   bool is_news = false;
   {
     const std::lock_guard lock(mutex_);
     for (const std::uint32_t point : points)
-      for (const auto& [tool, part] : places_[point]) is_news |= change(running_[tool].motion, part, point);
+      for (const auto& [tool, part] : places_[point]) is_news |= change(running_[tool], part, point);
   }
   if (is_news) calls_.wake();
 }
 
 void Tools::on_values(Span<const std::uint32_t> points, Time now) {
-  each_place(points, [&](ToolMotion& motion, ToolPart part, std::uint32_t point) {
-    return motion.see(part, values_.registers(point)[0] != 0, values_.stamp(point), now);
+  each_place(points, [&](Running& running, ToolPart part, std::uint32_t point) {
+    const ValueTable::Freshness fresh = values_.freshness(point, now);
+    running.seen[static_cast<std::size_t>(part)] = {fresh.number, fresh.last_good.value_or(now)};
+    return running.motion.see(part, values_.registers(point)[0] != 0, values_.stamp(point), now);
   });
 }
 
 void Tools::on_no_values(Span<const std::uint32_t> points, Time now) {
-  each_place(points, [&](ToolMotion& motion, ToolPart part, std::uint32_t /*point*/) {
-    motion.lose(part, now);
+  each_place(points, [&](Running& running, ToolPart part, std::uint32_t /*point*/) {
+    running.motion.lose(part, now);
     return true;
   });
 }
@@ -159,9 +208,10 @@ void Tools::on_gap(Time now) {
 }
 
 void Tools::on_online(bool online, Time now) {
-  if (online) return;
   {
     const std::lock_guard lock(mutex_);
+    is_online_ = online;
+    if (online) return;
     for (Running& running : running_) running.motion.go_offline(now);
   }
   calls_.wake();

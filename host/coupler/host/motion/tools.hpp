@@ -19,6 +19,18 @@
 
 namespace coupler::host {
 
+/// The sender of a goal, and the sender's number for it.
+struct GoalKey {
+  const void* sender = nullptr;  ///< null: it is never cancelled
+  std::uint64_t number = 0;
+};
+
+/// Where a tool is, as a joint.
+struct JointPosition {
+  double position = 0;
+  Time at{};  ///< it was still there then
+};
+
 /// The tools of a device. The device's thread says what it has read, and another thread, in which commands
 /// and results are given, calls step().
 class Tools {
@@ -41,8 +53,12 @@ class Tools {
 
   /// Returns whether a tool has the point.
   bool has(std::uint32_t point) const { return !places_[point].empty(); }
-  /// Begins a goal of a tool. step() calls `done` exactly once.
-  void begin(std::size_t tool, ToolEnd end, Time now, const Done& done);
+  /// Begins a goal of a tool. step() calls `done` exactly once; so does begin() after end().
+  void begin(std::size_t tool, ToolEnd end, Time now, const Done& done, GoalKey key = {});
+  /// Cancels a goal that has no result yet.
+  void cancel(std::size_t tool, GoalKey key, Time now);
+  /// Returns nothing while the device is offline, an input has no good value, or both ends are seen.
+  std::optional<JointPosition> position(std::size_t tool, Time now);
   /// Somebody else writes the point: its tools do nothing more with it.
   void disturb(std::uint32_t point, const std::string& why, Time now);
   /// The same for all tools. Once it has returned, no write is made for an earlier goal.
@@ -77,12 +93,22 @@ class Tools {
     Time at{};                           ///< when it got its result
     std::optional<std::string> failure;  ///< none: it has no result yet; empty: it was carried out
   };
+  struct Goal {
+    GoalKey key;
+    Done done;
+  };
+  /// A value of a part that the motion has seen.
+  struct Seen {
+    std::uint64_t number = 0;  ///< see ValueTable::Value
+    Time at{};                 ///< the latest time at which the value was still this
+  };
   struct Running {
     Running(const Tool& tool, Time now) : motion(tool, now) {}
     std::uint32_t point(ToolPart part) const { return points[static_cast<std::size_t>(part)]; }
     ToolMotion motion;
     std::array<std::uint32_t, tool_parts> points{};  ///< of the parts that it has
-    std::vector<Done> goals;                         ///< without a result, oldest first
+    std::array<Seen, tool_parts> seen{};
+    std::vector<Goal> goals;  ///< without a result, oldest first
   };
   /// Work that is done without mutex_.
   struct Work {
@@ -93,6 +119,8 @@ class Tools {
   };
 
   void on_result(Sent& sent, const WriteResult& result);
+  std::optional<JointPosition> position_of(std::size_t tool, Time now) const;
+  std::optional<Time> known_at(const Running& running, ToolPart part, Time now) const;
   void take_results();
   void take(std::size_t tool, Time now, Work& work);
   template <class Change>
@@ -107,6 +135,7 @@ class Tools {
   std::mutex mutex_;
   std::vector<Running> running_;  ///< by tool
   std::list<Sent> sent_;
+  bool is_online_ = false;
   std::string end_reason_;  ///< empty: it has not ended
 };
 

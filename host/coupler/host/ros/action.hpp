@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// The actions that the driver serves, without ROS.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "coupler/host/core/clock.hpp"
 
@@ -12,36 +14,65 @@ namespace coupler::host {
 
 /// A goal of an action, as long as the node is there.
 using GoalNumber = std::uint64_t;
-enum class GoalEnd : std::uint8_t { succeeded, aborted, cancelled };
+enum class GoalEnd : std::uint8_t {
+  succeeded,
+  aborted,
+  replaced,  ///< by a newer goal; ROS 1: preempted, ROS 2: aborted
+  cancelled
+};
 
-/// The action coupler_driver/WaitFor. The destructor waits for a call of a handler that runs.
-class WaitForServer {
+/// An action. The destructor waits until a running handler has returned.
+template <class G, class R>
+class ServedAction {
  public:
-  struct Goal {
-    std::string point;
-    std::string condition;
-    std::string value;
-    std::chrono::nanoseconds for_at_least{};
-    std::chrono::nanoseconds timeout{};
-    std::chrono::nanoseconds since{};  ///< wall time; 0: none
-  };
-  struct Result {
-    bool met = false;
-    std::string value;
-    std::chrono::nanoseconds stamp{};  ///< wall time; 0: none
-    std::chrono::duration<double> uncertainty{};
-    std::string reason;
-  };
+  using Goal = G;
+  using Result = R;
   /// The functions that the server calls in a thread of ROS. They must not wait for anything.
   struct Handler {
     /// `received`: before the goal was accepted, after which its client may act.
-    std::function<void(WaitForServer&, GoalNumber, Time received, const Goal&)> begin;
-    std::function<void(GoalNumber)> cancel;
+    std::function<void(ServedAction&, GoalNumber, Time received, const Goal&)> begin;
+    std::function<void(ServedAction&, GoalNumber)> cancel;
   };
 
-  virtual ~WaitForServer() = default;
-  /// Gives the result of a goal. Nothing if it has one. Any thread may call it.
-  virtual void finish(GoalNumber number, GoalEnd how, const Result& result) = 0;
+  virtual ~ServedAction() = default;
+
+  // Any thread may make these calls, which do nothing for a goal that has its result.
+
+  /// `text`: why; only ROS 1 has a place for it.
+  virtual void finish(GoalNumber number, GoalEnd how, const Result& result, const std::string& text) = 0;
+  /// Does nothing if the action has no feedback.
+  virtual void feed_back(GoalNumber number, const Result& as_it_is_now) = 0;
 };
+
+struct WaitForGoal {
+  std::string point;
+  std::string condition;
+  std::string value;
+  std::chrono::nanoseconds for_at_least{};
+  std::chrono::nanoseconds timeout{};
+  std::chrono::nanoseconds since{};  ///< wall time; 0: none
+};
+struct WaitForResult {
+  bool met = false;
+  std::string value;
+  std::chrono::nanoseconds stamp{};  ///< wall time; 0: none
+  std::chrono::duration<double> uncertainty{};
+  std::string reason;
+};
+/// coupler_driver/WaitFor.
+using WaitForServer = ServedAction<WaitForGoal, WaitForResult>;
+
+/// Positions of joints. GripperCommand has one without the name of its joint.
+struct GripperGoal {
+  std::vector<std::string> joints;
+  std::vector<double> positions;
+};
+struct GripperState {
+  double position = 0;  ///< NaN: it is unknown
+  bool stalled = false;
+  bool reached_goal = false;
+};
+/// control_msgs/GripperCommand or control_msgs/ParallelGripperCommand.
+using GripperServer = ServedAction<GripperGoal, GripperState>;
 
 }  // namespace coupler::host

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros/device_tools.hpp"
 
+#include <algorithm>
 #include <future>
 #include <utility>
 
@@ -24,6 +25,7 @@ std::unique_ptr<Follower> DeviceTools::start(Node& node, const Map& map, const V
                                              std::function<void(std::uint32_t)> ask) {
   std::unique_ptr<DeviceTools> tools(
       new DeviceTools(node, map, values, subscribers, std::move(write), std::move(ask)));
+  tools->joints_due_.start(now());
   tools->thread_.start();
   tools->thread_.wake();  // the states are shown
   return tools;
@@ -33,10 +35,13 @@ DeviceTools::DeviceTools(Node& node, const Map& map, const ValueTable& values, S
                          std::function<void(const Write&)> write, std::function<void(std::uint32_t)> ask)
     : node_(node),
       map_(map),
-      thread_([this](Time now) { return tools_.step(now); }),
+      thread_([this](Time now) { return step(now); }),
       tools_(map_, values, now(),
              {std::move(write), std::move(ask), [this] { thread_.wake(); },
-              [this](std::size_t tool, const ToolStatus& status) { show(tool, status); }}) {
+              [this](std::size_t tool, const ToolStatus& status) { show(tool, status); }}),
+      joints_(node, map_, tools_),
+      joints_due_(period_of(map_.joint_rate)),
+      actions_(node, map_, tools_) {
   for (std::uint32_t i = 0; i < map_.points.size(); ++i)
     if (tools_.has(i)) subscribers.add(i);  // so that it is read
   for (const Tool& tool : map_.tools) {
@@ -54,6 +59,17 @@ void DeviceTools::begin() {
     offer(i, *services_.back(), ToolEnd::closed);
     services_.back()->start();
   }
+  actions_.offer();
+}
+
+Time DeviceTools::step(Time now) {
+  const Time next = tools_.step(now);
+  if (now >= joints_due_.due()) {
+    joints_.publish(now);
+    actions_.feed_back(now);
+    joints_due_.advance(now);
+  }
+  return std::min(next, joints_due_.due());
 }
 
 void DeviceTools::offer(std::size_t tool, ServiceThread& service, ToolEnd end) {
@@ -85,13 +101,15 @@ void DeviceTools::end() {
 CallAnswer DeviceTools::answer(std::size_t tool, ToolEnd end) {
   const auto ended = std::make_shared<std::promise<CallAnswer>>();
   tools_.begin(tool, end, now(), [ended](const ToolResult& result) {
-    ended->set_value({result.how != ToolResult::How::aborted, result.text});
+    ended->set_value({result.is_success(), result.text});
   });
   return ended->get_future().get();
 }
 
+/// Publishes the position before the goal's result, so that the client finds it when the result arrives.
 void DeviceTools::show(std::size_t tool, const ToolStatus& status) {
   if (publish_[tool]) publish_[tool](status, measured_wall_time().of(status.since));
+  joints_.publish(now());
 }
 
 }  // namespace coupler::host

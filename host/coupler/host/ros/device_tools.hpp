@@ -9,11 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "coupler/host/core/poll_deadlines.hpp"
 #include "coupler/host/core/value_table.hpp"
 #include "coupler/host/motion/step_thread.hpp"
 #include "coupler/host/motion/tools.hpp"
 #include "coupler/host/ros/follower.hpp"
 #include "coupler/host/ros/node.hpp"
+#include "coupler/host/ros/tool_actions.hpp"
+#include "coupler/host/ros/tool_joints.hpp"
 
 namespace coupler::host {
 
@@ -21,8 +24,8 @@ namespace coupler::host {
 std::string why_not_direct(const Map& map, const Point& point);
 
 /// The tools of a device: the services `<name>/<tool>/open` and `<name>/<tool>/close`, which answer when the
-/// tool is there, and the latched topic `<name>/<tool>/state`. The services of a tool have two threads: a new
-/// call ends the one before, whose thread is free then.
+/// tool is there, the latched topic `<name>/<tool>/state`, and what ToolActions and ToolJoints offer. The
+/// services of a tool have two threads: a new call ends the one before, whose thread is free then.
 class DeviceTools final : public Follower, private Sink {
  public:
   /// Shows the states; the services come with begin(). `write` sends a write, and `ask` makes the device read
@@ -55,6 +58,7 @@ class DeviceTools final : public Follower, private Sink {
   void on_report(Level /*level*/, const std::string& /*text*/) override {}
 
   static Time now() { return std::chrono::steady_clock::now(); }
+  Time step(Time now);
   void offer(std::size_t tool, ServiceThread& service, ToolEnd end);
   void show(std::size_t tool, const ToolStatus& status);
   CallAnswer answer(std::size_t tool, ToolEnd end);
@@ -64,6 +68,9 @@ class DeviceTools final : public Follower, private Sink {
   std::vector<Node::PublishToolState> publish_;  ///< by tool; empty where a point has the topic
   StepThread thread_;
   Tools tools_;
+  ToolJoints joints_;
+  PollDeadlines joints_due_;
+  ToolActions actions_;
   std::vector<std::unique_ptr<ServiceThread>> services_;  ///< by tool; last: they use the others
 };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros/device_waits.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <string_view>
@@ -30,11 +29,7 @@ double seconds(std::chrono::nanoseconds duration) { return std::chrono::duration
 
 }  // namespace
 
-bool can_wait_for(const Map& map) {
-  return map.wait_for && std::none_of(map.points.begin(), map.points.end(), [](const Point& point) {
-           return point.name.substr(0, point.name.find('/')) == action_name;
-         });
-}
+bool can_wait_for(const Map& map) { return map.wait_for && !is_taken(map, action_name); }
 
 std::unique_ptr<Follower> DeviceWaits::start(Node& node, const Map& map, const ValueTable& values,
                                              SubscriberCounts& subscribers,
@@ -51,8 +46,8 @@ DeviceWaits::DeviceWaits(Node& node, const Map& map, const ValueTable& values, S
           map_, values, std::chrono::steady_clock::now(), [this] { thread_.wake(); }, std::move(ask)),
       server_(node.offer_wait_for(fmt::format("{}/{}", map_.name, action_name),
                                   {[this](WaitForServer& server, GoalNumber number, Time received,
-                                          const Goal& goal) { begin(server, number, received, goal); },
-                                   [this](GoalNumber number) { waits_.cancel(number); }})) {
+                                          const WaitForGoal& goal) { begin(server, number, received, goal); },
+                                   [this](WaitForServer&, GoalNumber number) { waits_.cancel(number); }})) {
   thread_.start();
 }
 
@@ -64,7 +59,7 @@ void DeviceWaits::end() {
 }
 
 /// Returns what a goal asks for, or what is wrong with it and the remedy.
-tl::expected<WaitGoal, std::string> DeviceWaits::understood(const Goal& goal, Time now) const {
+tl::expected<WaitGoal, std::string> DeviceWaits::understood(const WaitForGoal& goal, Time now) const {
   const auto named = read_point_named(map_, goal.point);
   if (!named) return tl::unexpected(named.error());
   const Point& point = **named;
@@ -89,9 +84,10 @@ tl::expected<WaitGoal, std::string> DeviceWaits::understood(const Goal& goal, Ti
                   now + std::chrono::duration_cast<Duration>(goal.timeout)};
 }
 
-void DeviceWaits::begin(WaitForServer& server, GoalNumber number, Time received, const Goal& goal) {
+void DeviceWaits::begin(WaitForServer& server, GoalNumber number, Time received, const WaitForGoal& goal) {
   const auto asked = understood(goal, received);
-  if (!asked) return server.finish(number, GoalEnd::aborted, {false, {}, {}, {}, asked.error()});
+  if (!asked)
+    return server.finish(number, GoalEnd::aborted, {false, {}, {}, {}, asked.error()}, asked.error());
   const std::uint32_t point = asked->point;
   subscribers_.add(point);  // so that it is read
   try {
@@ -107,13 +103,13 @@ void DeviceWaits::begin(WaitForServer& server, GoalNumber number, Time received,
 void DeviceWaits::finish(WaitForServer& server, GoalNumber number, std::uint32_t point,
                          const WaitResult& result) {
   subscribers_.remove(point);
-  WaitForServer::Result sent{result.end == WaitResult::End::met, result.value, {}, {}, result.reason};
+  WaitForResult sent{result.end == WaitResult::End::met, result.value, {}, {}, result.reason};
   if (sent.met) {
     const WallTime wall = measured_wall_time();
     sent.stamp = wall.of(result.stamp.at);
     sent.uncertainty = result.stamp.uncertainty + wall.error();
   }
-  server.finish(number, end_of(result.end), sent);
+  server.finish(number, end_of(result.end), sent, result.reason);
 }
 
 }  // namespace coupler::host

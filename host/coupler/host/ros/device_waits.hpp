@@ -52,9 +52,8 @@ class DeviceWaits final : public Follower, private Sink {
   void on_online(bool online) override { waits_.on_online(online, std::chrono::steady_clock::now()); }
   void on_report(Level /*level*/, const std::string& /*text*/) override {}
 
-  using Goal = WaitForServer::Goal;
-  tl::expected<WaitGoal, std::string> understood(const Goal& goal, Time now) const;
-  void begin(WaitForServer& server, GoalNumber number, Time received, const Goal& goal);
+  tl::expected<WaitGoal, std::string> understood(const WaitForGoal& goal, Time now) const;
+  void begin(WaitForServer& server, GoalNumber number, Time received, const WaitForGoal& goal);
   void finish(WaitForServer& server, GoalNumber number, std::uint32_t point, const WaitResult& result);
 
   const Map map_;

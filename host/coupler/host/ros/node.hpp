@@ -9,9 +9,11 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "coupler/base/span.hpp"
 #include "coupler/host/core/call_queue.hpp"
 #include "coupler/host/core/clock.hpp"
 #include "coupler/host/core/device_statistics.hpp"
@@ -200,11 +202,25 @@ class Node {
   /// coupler_driver/ToolState, latched. From one thread only. `since` is wall time.
   using PublishToolState = std::function<void(const ToolStatus&, std::chrono::nanoseconds since)>;
   virtual PublishToolState advertise_tool_state(const std::string& topic) = 0;
+  /// sensor_msgs/JointState. From one thread only; `stamp` is wall time.
+  struct Joint {
+    std::string_view name;
+    double position;
+  };
+  using PublishJoints = std::function<void(Span<const Joint>, std::chrono::nanoseconds stamp)>;
+  virtual PublishJoints advertise_joints(const std::string& topic) = 0;
   /// `calls`: how many it answers at a time.
   virtual std::unique_ptr<ServiceThread> make_service_thread(std::size_t calls = 1) = 0;
   /// Serves coupler_driver/WaitFor as long as the result exists.
   virtual std::unique_ptr<WaitForServer> offer_wait_for(const std::string& name,
                                                         WaitForServer::Handler handler) = 0;
+  /// Serves control_msgs/GripperCommand. Null if the driver was built without control_msgs.
+  virtual std::unique_ptr<GripperServer> offer_gripper(const std::string& name,
+                                                       GripperServer::Handler handler) = 0;
+  /// Serves control_msgs/ParallelGripperCommand for the joint. Null if it was built without that.
+  virtual std::unique_ptr<GripperServer> offer_parallel_gripper(const std::string& name,
+                                                                const std::string& joint,
+                                                                GripperServer::Handler handler) = 0;
 
   /// publish_diagnostics() calls `make` of every entry, in the order in which they were added. The entries of
   /// all devices are one message: a publisher of /diagnostics keeps only the newest.

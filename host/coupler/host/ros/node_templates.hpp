@@ -239,35 +239,21 @@ Node::PublishToolState tool_state_with(const Publisher& publisher) {
   };
 }
 
-/// Serves coupler_driver/WaitFor by an action server of a ROS.
-template <class Server>
-class TypedWaitForServer : public WaitForServer {
- public:
-  template <class Place>
-  TypedWaitForServer(Place& place, const std::string& name, Handler handler)
-      : server_(
-            place, name,
-            [this, begin = std::move(handler.begin)](GoalNumber number, Time received,
-                                                     const typename Server::Goal& goal) {
-              begin(*this, number, received,
-                    {goal.point, goal.condition, goal.value, message_time(goal.for_at_least),
-                     message_time(goal.timeout), message_time(goal.since)});
-            },
-            std::move(handler.cancel)) {}
-
-  void finish(GoalNumber number, GoalEnd how, const Result& result) override {
-    typename Server::Result message;
-    message.met = result.met;
-    message.value = result.value;
-    put_time(message.stamp, result.stamp);
-    message.uncertainty = result.uncertainty.count();
-    message.reason = result.reason;
-    server_.finish(number, how, message);
-  }
-
- private:
-  Server server_;
-};
+/// Used by Node::advertise_joints(): the publisher is one of sensor_msgs/JointState.
+template <class Message, class Publisher>
+Node::PublishJoints joints_with(const Publisher& publisher) {
+  return [publisher, message = Message()](Span<const Node::Joint> joints,
+                                          std::chrono::nanoseconds stamp) mutable {
+    put_time(message.header.stamp, stamp);
+    message.name.resize(joints.size());
+    message.position.resize(joints.size());
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      message.name[i] = joints[i].name;
+      message.position[i] = joints[i].position;
+    }
+    publisher.publish(message);
+  };
+}
 
 /// Types names the service types of a ROS; `Adapter::serve<S>(name, function)` offers a service that calls
 /// function(request, response) in the adapter's thread.

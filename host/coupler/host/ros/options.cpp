@@ -28,7 +28,7 @@ std::string option_names(const SettingKey& key) {
 Options parse_options(std::vector<std::string> arguments, const Dialect& dialect) {
   Options result;
   command_line::Program app(description, "coupler_driver");
-  app.version(fmt::format("coupler_driver {}", version));
+  app.version(fmt::format("coupler_driver {}{}", version, dialect.left_out));
   app.propose(nearest);
   app.stray_is_of("--map");
   app.footer(std::string(dialect.help));

@@ -16,6 +16,7 @@ struct Dialect {
   std::string_view help;            ///< the last lines of --help
   std::string_view device_setting;  ///< how a setting of one device of several is given
   std::string_view relative_path;   ///< the remedy for a relative path that was not found; has {path}
+  std::string_view left_out;        ///< for --version: " without PACKAGE", if it was not there at the build
 };
 
 /// The arguments that are not ROS's own.

@@ -8,6 +8,10 @@
 
 namespace coupler::host {
 
+/// How many messages with the positions of joints wait for a subscriber: as many as publishers
+/// of ROS usually keep.
+constexpr std::uint32_t joints_depth = 10;
+
 /// How many messages of a point wait for a subscriber: as many as the map says. Where it says nothing, and a
 /// node may tell the point's changes, those of two replies: all of one reply are published at once.
 inline std::uint32_t topic_depth(const Point& point) {

@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -23,6 +24,7 @@ class TypedActionServer {
  public:
   using Goal = typename A::_action_goal_type::_goal_type;
   using Result = typename A::_action_result_type::_result_type;
+  using Feedback = typename A::_action_feedback_type::_feedback_type;
 
   /// `begin` and `cancel` are called in that thread.
   TypedActionServer(const ros::NodeHandle& handle, const std::string& name,
@@ -43,21 +45,20 @@ class TypedActionServer {
   TypedActionServer(const TypedActionServer&) = delete;
   TypedActionServer& operator=(const TypedActionServer&) = delete;
 
-  /// Any thread may call it.
-  void finish(GoalNumber number, GoalEnd how, const Result& result) {
-    Handle goal;
-    {
-      const std::lock_guard lock(mutex_);
-      const auto at = goals_.find(number);
-      if (at == goals_.end()) return;
-      goal = at->second;
-      goals_.erase(at);
-    }
+  // Any thread may make these calls.
+
+  void finish(GoalNumber number, GoalEnd how, const Result& result, const std::string& text) {
+    auto goal = running(number, true);
+    if (!goal) return;
     switch (how) {
-      case GoalEnd::succeeded: return goal.setSucceeded(result);
-      case GoalEnd::aborted: return goal.setAborted(result);
-      case GoalEnd::cancelled: return goal.setCanceled(result);
+      case GoalEnd::succeeded: return goal->setSucceeded(result, text);
+      case GoalEnd::aborted: return goal->setAborted(result, text);
+      case GoalEnd::replaced:
+      case GoalEnd::cancelled: return goal->setCanceled(result, text);
     }
+  }
+  void feed_back(GoalNumber number, const Feedback& feedback) {
+    if (auto goal = running(number, false)) goal->publishFeedback(feedback);
   }
 
  private:
@@ -79,6 +80,16 @@ class TypedActionServer {
       goals_.emplace(number, goal);
     }
     begin_(number, received, *goal.getGoal());
+  }
+
+  /// Returns a goal that has no result yet; `ends`: it gets one now.
+  std::optional<Handle> running(GoalNumber number, bool ends) {
+    const std::lock_guard lock(mutex_);
+    const auto at = goals_.find(number);
+    if (at == goals_.end()) return std::nullopt;
+    Handle goal = at->second;
+    if (ends) goals_.erase(at);
+    return goal;
   }
 
   /// 0, which none has, if it has its result.

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "coupler/base/starts_with.hpp"
+#include "coupler/host/ros/left_out_of_build.hpp"
 #include "coupler/host/ros/program.hpp"
 
 namespace coupler::host {
@@ -91,6 +92,7 @@ const Dialect ros1_dialect{
     help,
     "as in _NAME/address:=HOST (NAME being the map's name), or as a parameter ~NAME/address",
     "a relative path counts from the folder where the program starts",
+    left_out_of_build,
 };
 
 const Dialect roslaunch_dialect{
@@ -98,6 +100,7 @@ const Dialect roslaunch_dialect{
     ros1_dialect.device_setting,
     "roslaunch starts programs in that folder (ROS_HOME): give the whole path, as in map:=$PWD/{path} or "
     "$(find PACKAGE)/{path}",
+    left_out_of_build,
 };
 
 Arguments parse_arguments(Span<char* const> arguments) {

@@ -9,12 +9,12 @@
 #include <coupler_driver/Scheduled.h>
 #include <coupler_driver/Status.h>
 #include <coupler_driver/ToolState.h>
-#include <coupler_driver/WaitForAction.h>
 #include <coupler_driver/Write.h>
 #include <ros/callback_queue.h>
 #include <ros/console.h>
 #include <ros/names.h>
 #include <ros/this_node.h>
+#include <sensor_msgs/JointState.h>
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 
@@ -28,7 +28,6 @@
 #include "coupler/host/ros/node_templates.hpp"
 #include "coupler/host/ros/point_info.hpp"
 #include "coupler/host/ros/topic_depth.hpp"
-#include "coupler/host/ros1/action.hpp"
 #include "coupler/host/ros1/in_place_queue.hpp"
 #include "coupler/host/ros1/logger_service.hpp"
 #include "coupler/host/ros1/messages.hpp"
@@ -235,16 +234,14 @@ Node::PublishToolState Ros1Node::advertise_tool_state(const std::string& topic) 
   return tool_state_with<Message>(advertise_latched<Message>(handle_, topic));
 }
 
-std::unique_ptr<ServiceThread> Ros1Node::make_service_thread(std::size_t calls) {
-  return std::make_unique<Ros1ServiceThread>(handle_, remappings_, calls);
+Node::PublishJoints Ros1Node::advertise_joints(const std::string& topic) {
+  using Message = sensor_msgs::JointState;
+  note_published<Message>(topic);
+  return joints_with<Message>(handle_.advertise<Message>(topic, joints_depth));
 }
 
-std::unique_ptr<WaitForServer> Ros1Node::offer_wait_for(const std::string& name,
-                                                        WaitForServer::Handler handler) {
-  for (const char* topic : {"cancel", "feedback", "goal", "result", "status"})
-    remappings_.add_name(fmt::format("{}/{}", name, topic), false);
-  return std::make_unique<TypedWaitForServer<TypedActionServer<coupler_driver::WaitForAction>>>(
-      handle_, name, std::move(handler));
+std::unique_ptr<ServiceThread> Ros1Node::make_service_thread(std::size_t calls) {
+  return std::make_unique<Ros1ServiceThread>(handle_, remappings_, calls);
 }
 
 void Ros1Node::add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "coupler/base/starts_with.hpp"
+#include "coupler/host/ros/left_out_of_build.hpp"
 #include "coupler/host/ros/program.hpp"
 
 namespace coupler::host {
@@ -62,6 +63,7 @@ const Dialect ros2_dialect{
     help,
     "as a parameter, as in --ros-args -p NAME.address:=HOST (NAME being the map's name)",
     "a relative path counts from the folder where the program starts; in a launch file give the whole path",
+    left_out_of_build,
 };
 
 Arguments parse_arguments(Span<char* const> arguments) {

@@ -2,7 +2,6 @@
 #include "coupler/host/ros2/node.hpp"
 
 #include <rcutils/logging.h>
-#include <coupler_driver/action/wait_for.hpp>
 #include <coupler_driver/msg/points.hpp>
 #include <coupler_driver/msg/scheduled.hpp>
 #include <coupler_driver/msg/status.hpp>
@@ -13,6 +12,7 @@
 #include <coupler_driver/srv/schedule.hpp>
 #include <coupler_driver/srv/write.hpp>
 #include <rcl_interfaces/msg/parameter_type.hpp>
+#include <sensor_msgs/msg/joint_state.hpp>
 #include <std_srvs/srv/set_bool.hpp>
 #include <std_srvs/srv/trigger.hpp>
 
@@ -29,7 +29,6 @@
 #include "coupler/host/ros/point_info.hpp"
 #include "coupler/host/ros/topic_depth.hpp"
 #include "coupler/host/ros2/messages.hpp"
-#include "coupler/host/ros2/rcl/action.hpp"
 #include "coupler/host/ros2/rcl/service.hpp"
 #include "coupler/map/printable.hpp"
 
@@ -257,15 +256,15 @@ Node::PublishToolState Ros2Node::advertise_tool_state(const std::string& topic) 
       rcl::Publisher<Message>(node_, topic, rcl::latched(), {{}, warn_subscriber(false)}));
 }
 
-std::unique_ptr<ServiceThread> Ros2Node::make_service_thread(std::size_t calls) {
-  return std::make_unique<Ros2ServiceThread>(node_, remappings_, calls);
+Node::PublishJoints Ros2Node::advertise_joints(const std::string& topic) {
+  using Message = sensor_msgs::msg::JointState;
+  note_published<Message>(topic);
+  return joints_with<Message>(
+      rcl::Publisher<Message>(node_, topic, rcl::reliable(joints_depth), {{}, warn_subscriber(false)}));
 }
 
-std::unique_ptr<WaitForServer> Ros2Node::offer_wait_for(const std::string& name,
-                                                        WaitForServer::Handler handler) {
-  remappings_.add_name(name, false);
-  return std::make_unique<TypedWaitForServer<rcl::TypedActionServer<coupler_driver::action::WaitFor>>>(
-      node_, name, std::move(handler));
+std::unique_ptr<ServiceThread> Ros2Node::make_service_thread(std::size_t calls) {
+  return std::make_unique<Ros2ServiceThread>(node_, remappings_, calls);
 }
 
 void Ros2Node::add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) {

@@ -50,9 +50,14 @@ class Ros2Node : public Node {
   PublishScheduled advertise_scheduled(const std::string& topic, const Map& map,
                                        const WallTime& wall) override;
   PublishToolState advertise_tool_state(const std::string& topic) override;
+  PublishJoints advertise_joints(const std::string& topic) override;
   std::unique_ptr<ServiceThread> make_service_thread(std::size_t calls) override;
   std::unique_ptr<WaitForServer> offer_wait_for(const std::string& name,
                                                 WaitForServer::Handler handler) override;
+  std::unique_ptr<GripperServer> offer_gripper(const std::string& name,
+                                               GripperServer::Handler handler) override;
+  std::unique_ptr<GripperServer> offer_parallel_gripper(const std::string& name, const std::string& joint,
+                                                        GripperServer::Handler handler) override;
   void add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) override;
   void publish_diagnostics() override;
   void start() override;

@@ -16,7 +16,8 @@ rcl_clock_t no_clock() { return {}; }
 rcl_action_goal_event_t event_of(GoalEnd how) {
   switch (how) {
     case GoalEnd::succeeded: return GOAL_EVENT_SUCCEED;
-    case GoalEnd::aborted: return GOAL_EVENT_ABORT;
+    case GoalEnd::aborted:
+    case GoalEnd::replaced: return GOAL_EVENT_ABORT;
     case GoalEnd::cancelled: break;
   }
   return GOAL_EVENT_CANCELED;
@@ -99,6 +100,11 @@ void ActionServer::check_answer(rcl_ret_t result) {
 bool ActionServer::exists(const Uuid& id) const {
   const rcl_action_goal_info_t info = info_of(id);
   return rcl_action_server_goal_exists(server_.get(), &info);
+}
+
+std::optional<ActionServer::Uuid> ActionServer::running(GoalNumber number) const {
+  const auto at = goals_.find(number);
+  return at == goals_.end() ? std::nullopt : std::optional(at->second);
 }
 
 std::optional<GoalNumber> ActionServer::accept(const Uuid& id, builtin_interfaces::msg::Time& at) {

@@ -51,6 +51,8 @@ class ActionServer {
   /// Returns the number of the new goal, and the time at which it was accepted; nothing if it cannot be one.
   std::optional<host::GoalNumber> accept(const Uuid& id, builtin_interfaces::msg::Time& at);
   bool exists(const Uuid& id) const;
+  /// Returns the id of a goal that has no result yet.
+  std::optional<Uuid> running(host::GoalNumber number) const;
   /// Returns its id and its status now; nothing if there is no such goal, or it has ended.
   std::optional<std::pair<Uuid, std::int8_t>> end(host::GoalNumber number, host::GoalEnd how);
   /// Returns the goals whose results nobody may ask for any more.
@@ -87,6 +89,7 @@ class TypedActionServer : ActionServer {
  public:
   using Goal = typename A::Goal;
   using Result = typename A::Result;
+  using Feedback = typename A::Feedback;
 
   /// `begin` and `cancel` are called in the inbox's thread. Throws Error.
   TypedActionServer(Node& node, const std::string& name,
@@ -99,8 +102,9 @@ class TypedActionServer : ActionServer {
   }
   ~TypedActionServer() { stop_listening(); }
 
-  /// Any thread may call it.
-  void finish(host::GoalNumber number, host::GoalEnd how, const Result& result) {
+  // Any thread may make these calls.
+
+  void finish(host::GoalNumber number, host::GoalEnd how, const Result& result, const std::string& /*text*/) {
     const std::lock_guard lock(mutex_);
     const auto ended = end(number, how);
     if (!ended) return;
@@ -111,6 +115,15 @@ class TypedActionServer : ActionServer {
     for (RequestId& id : asked.waiting)
       check_answer(rcl_action_send_result_response(get(), &id, &*asked.response));
     asked.waiting.clear();
+  }
+  void feed_back(host::GoalNumber number, const Feedback& feedback) {
+    const std::lock_guard lock(mutex_);
+    const auto id = running(number);
+    if (!id) return;
+    typename A::Impl::FeedbackMessage message;
+    message.goal_id.uuid = *id;
+    message.feedback = feedback;
+    check_answer(rcl_action_publish_feedback(get(), &message));
   }
 
  private:
