@@ -53,6 +53,7 @@ Exit check(const Arguments& arguments) {
       put(lock_report(loaded.lock));
       if (!loaded.map) continue;
       std::puts(summary(file, loaded.map->map()).c_str());
+      put(moveit_margin(loaded.map->map()));
       put(rights_table(loaded.map->map()));
       for (const std::string& line : certificates) std::puts(line.c_str());
     }

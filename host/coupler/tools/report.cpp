@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <vector>
 
@@ -71,6 +72,17 @@ std::string summary(const std::string& file, const Map& map) {
   return fmt::format("{}: ok: {}, {}{}{}, fingerprint {}", printable(file), map.name,
                      counted(static_cast<std::ptrdiff_t>(map.points.size()), "point"), by_table(map),
                      tools == 0 ? "" : ", " + counted(tools, "tool"), fingerprint_text(map.fingerprint));
+}
+
+std::string moveit_margin(const Map& map) {
+  std::chrono::milliseconds longest{0};
+  for (const Tool& tool : map.tools)
+    if (!tool.joint.empty() || tool.positions != JointPositions{}) longest = std::max(longest, tool.timeout);
+  if (longest.count() == 0) return {};
+  // Before it moves and at its end a goal may wait so long, too, for each write.
+  return fmt::format(
+      "  for MoveIt: allowed_goal_duration_margin: {} or more (four times the longest timeout)\n",
+      std::chrono::duration<double>(4 * longest).count());
 }
 
 namespace {

@@ -12,6 +12,10 @@ namespace coupler::tools {
 /// "device.yaml: ok: device, 3 points (1 coil, 2 discrete inputs), fingerprint 0123456789abcdef"
 std::string summary(const std::string& file, const Map& map);
 
+/// Returns the margin that MoveIt needs in order not to cancel goals of tools; empty if no tool has a joint
+/// or positions.
+std::string moveit_margin(const Map& map);
+
 /// Returns a table of the points that each role may read and write; empty without `security`.
 std::string rights_table(const Map& map);
 

@@ -157,6 +157,13 @@ TEST_F(ToolsTest, A_write_by_somebody_else_ends_the_goal_of_that_tool) {
   EXPECT_EQ(writes[0].point, index("vacuum"));
 }
 
+TEST_F(ToolsTest, A_write_of_an_input_ends_nothing) {
+  begin(0, ToolEnd::closed);
+  tools.disturb(index("sensor_closed"), "sensor_closed was written directly", now());
+  tools.step(now());
+  EXPECT_THAT(results, IsEmpty());
+}
+
 TEST_F(ToolsTest, After_the_end_a_goal_is_aborted) {
   tools.end("the driver ends", now());
   begin(0, ToolEnd::closed);

@@ -170,6 +170,11 @@ class Check(Cli):
         self.assertRegex(done.stdout, r"^cell\.yaml: ok: cell, 4 points "
                                       r"\(1 coil, 2 discrete inputs, 1 input register\), fingerprint [0-9a-f]{16}\n$")
 
+    def test_the_margin_that_moveit_needs_is_told(self):
+        text = GOOD.replace("mapping:", "tools: {press: {close: lamp, travel: 1s, timeout: 1500ms, joint: ram}}\nmapping:")
+        self.assertIn("  for MoveIt: allowed_goal_duration_margin: 6 or more (four times the longest timeout)\n",
+                      self.coupler("check", self.file("cell.yaml", text)).stdout)
+
     def test_tools_are_counted(self):
         text = GOOD.replace("mapping:", "tools: {press: {close: lamp, travel: 1s}}\nmapping:")
         self.assertIn(" 1 input register), 1 tool, fingerprint ", self.coupler("check", self.file("cell.yaml", text)).stdout)

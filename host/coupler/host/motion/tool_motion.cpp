@@ -10,7 +10,6 @@
 namespace coupler::host {
 namespace {
 
-bool is_output(ToolPart part) { return part == ToolPart::close || part == ToolPart::open; }
 std::string_view word(bool on) { return on ? "on" : "off"; }
 
 }  // namespace

@@ -18,6 +18,7 @@ namespace coupler::host {
 enum class ToolPart : std::uint8_t { close, open, closed, opened, holds };
 constexpr std::size_t tool_parts = 5;
 constexpr std::array<ToolPart, 3> tool_inputs{ToolPart::closed, ToolPart::opened, ToolPart::holds};
+constexpr bool is_output(ToolPart part) { return part == ToolPart::close || part == ToolPart::open; }
 /// The name of the point; empty: the tool does not have it.
 std::string_view point_of(const Tool& tool, ToolPart part);
 

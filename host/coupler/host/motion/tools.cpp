@@ -93,7 +93,8 @@ std::optional<Time> Tools::known_at(const Running& running, ToolPart part, Time 
 void Tools::disturb(std::uint32_t point, const std::string& why, Time now) {
   {
     const std::scoped_lock lock(writing_, mutex_);
-    for (const Place& place : places_[point]) running_[place.tool].motion.disturb(why, now);
+    for (const Place& place : places_[point])
+      if (is_output(place.part)) running_[place.tool].motion.disturb(why, now);
   }
   calls_.wake();
 }

@@ -59,7 +59,7 @@ class Tools {
   void cancel(std::size_t tool, GoalKey key, Time now);
   /// Returns nothing while the device is offline, an input has no good value, or both ends are seen.
   std::optional<JointPosition> position(std::size_t tool, Time now);
-  /// Somebody else writes the point: its tools do nothing more with it.
+  /// Somebody else writes the point: the tools that have it as an output end their goals.
   void disturb(std::uint32_t point, const std::string& why, Time now);
   /// The same for all tools. Once it has returned, no write is made for an earlier goal.
   void disturb_all(const std::string& why, Time now);
