@@ -23,6 +23,9 @@ def has_control_msgs():
     return "without control_msgs" not in version
 
 
+HAS_CONTROL_MSGS = has_control_msgs()
+
+
 class Gripper(Client):
     """Of control_msgs/GripperCommand."""
 
@@ -107,7 +110,7 @@ class Joints(DeviceToolsTest):
         self.assertTrue(self.call("cup/close").result()[0])
 
 
-@unittest.skipUnless(has_control_msgs(), "the driver was built without control_msgs")
+@unittest.skipUnless(HAS_CONTROL_MSGS, "the driver was built without control_msgs")
 class Actions(DeviceToolsTest):
     def start(self, *arguments, more=JOINT, **options):
         super().start(*arguments, more=more, **options)
@@ -235,7 +238,7 @@ class Actions(DeviceToolsTest):
                          [f"/{self.name}/cup/gripper_cmd"])
 
 
-@unittest.skipUnless(IS_ROS2 and has_control_msgs(), "ROS 1 has no such action, or the driver was built without control_msgs")
+@unittest.skipUnless(IS_ROS2 and HAS_CONTROL_MSGS, "ROS 1 has no such action, or the driver was built without control_msgs")
 class ParallelActions(DeviceToolsTest):
     def start(self, *arguments, **options):
         super().start(*arguments, more=JOINT, **options)

@@ -43,9 +43,7 @@ std::string on_cancel(const Tool& tool) {
 
 /// Every tool is a joint, so the joints of all tools are shown, or of none.
 bool shows_joints(const Map& map) {
-  return std::any_of(map.tools.begin(), map.tools.end(), [](const Tool& tool) {
-    return !tool.joint.empty() || tool.positions != JointPositions{};
-  });
+  return std::any_of(map.tools.begin(), map.tools.end(), is_described_as_joint);
 }
 
 std::string joint(const Map& map, const Tool& tool) {

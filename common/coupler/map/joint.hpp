@@ -13,6 +13,11 @@ constexpr std::string_view joint_states_topic = "joint_states";
 constexpr std::string_view gripper_action = "gripper_cmd";
 constexpr std::string_view parallel_gripper_action = "parallel_gripper_cmd";
 
+/// Returns whether the map says anything of the tool as a joint.
+inline bool is_described_as_joint(const Tool& tool) {
+  return !tool.joint.empty() || tool.positions != JointPositions{};
+}
+
 /// The name of a tool as a joint: "clamp_joint", or "NAME/clamp" if the map gives it none.
 inline std::string joint_name(const Map& map, const Tool& tool) {
   if (!tool.joint.empty()) return std::string(tool.joint);

@@ -12,6 +12,7 @@
 
 #include "coupler/json/json_text.hpp"
 #include "coupler/map/fingerprint.hpp"
+#include "coupler/map/joint.hpp"
 #include "coupler/map/printable.hpp"
 #include "coupler/map/rights_text.hpp"
 
@@ -77,7 +78,7 @@ std::string summary(const std::string& file, const Map& map) {
 std::string moveit_margin(const Map& map) {
   std::chrono::milliseconds longest{0};
   for (const Tool& tool : map.tools)
-    if (!tool.joint.empty() || tool.positions != JointPositions{}) longest = std::max(longest, tool.timeout);
+    if (is_described_as_joint(tool)) longest = std::max(longest, tool.timeout);
   if (longest.count() == 0) return {};
   // Before it moves and at its end a goal may wait so long, too, for each write.
   return fmt::format(

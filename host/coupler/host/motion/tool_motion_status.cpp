@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the state of a tool is, and the words for it.
+// This file decides what the state of a tool is, and finds the words for it.
 #include "coupler/host/motion/tool_motion.hpp"
 
 #include <fmt/format.h>

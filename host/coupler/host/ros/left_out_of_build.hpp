@@ -6,7 +6,7 @@
 
 namespace coupler::host {
 
-/// For --version.
+/// The end of what --version prints.
 #ifdef COUPLER_WITH_CONTROL_MSGS
 constexpr std::string_view left_out_of_build{};
 #else
