@@ -9,7 +9,7 @@
 
 namespace coupler::testing {
 
-static_assert(model_version == 18, "Compare the new fields of the model here, too");
+static_assert(model_version == 19, "Compare the new fields of the model here, too");
 
 /// What fields_of() lists.
 template <class Struct>

@@ -86,7 +86,7 @@ constexpr Map map{{
     {poll}, {changes}, {verify},
     {security},  // roles, those of clients without TLS and without a role, files, port
     {read_whole_name},
-    {wait_for}, {tools_name}, {joint_rate},
+    {wait_for}, {tools_name}, {{}}, {joint_rate},
 }};
 
 }}  // namespace coupler::maps::{name}

@@ -8,8 +8,9 @@
 
 namespace coupler {
 
-// Names of the driver for MoveIt: a topic below the map's name, and actions below a tool's.
+// Names of the driver for MoveIt: a topic and an action below the map's name, and actions below a tool's.
 constexpr std::string_view joint_states_topic = "joint_states";
+constexpr std::string_view trajectory_action = "follow_joint_trajectory";
 constexpr std::string_view gripper_action = "gripper_cmd";
 constexpr std::string_view parallel_gripper_action = "parallel_gripper_cmd";
 
@@ -18,10 +19,11 @@ inline bool is_described_as_joint(const Tool& tool) {
   return !tool.joint.empty() || tool.positions != JointPositions{};
 }
 
-/// The name of a tool as a joint: "clamp_joint", or "NAME/clamp" if the map gives it none.
-inline std::string joint_name(const Map& map, const Tool& tool) {
-  if (!tool.joint.empty()) return std::string(tool.joint);
-  return std::string(map.name) + '/' + std::string(tool.name);
+/// The name of a tool or an axis as a joint: "clamp_joint", or "NAME/clamp" if the map gives it none.
+template <class ToolOrAxis>
+std::string joint_name(const Map& map, const ToolOrAxis& of) {
+  if (!of.joint.empty()) return std::string(of.joint);
+  return std::string(map.name) + '/' + std::string(of.name);
 }
 
 }  // namespace coupler

@@ -17,7 +17,7 @@ namespace coupler {
 
 /// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
 /// not compile.
-constexpr int model_version = 18;
+constexpr int model_version = 19;
 
 /// The place of the coupler. ROS parameters and arguments override it.
 struct Connection {
@@ -167,6 +167,22 @@ struct Tool {
   OnCancel on_cancel = OnCancel::stay;
 };
 
+/// A value of an axis's point as a position of its joint.
+struct AxisPosition {
+  std::int64_t value = 0;  ///< 0 or 1 of a BOOL; otherwise the integer
+  double position = 0;
+};
+
+/// An output as a joint of a trajectory.
+struct Axis {
+  std::string_view name;
+  std::string_view point;    ///< a writable point with one value: a BOOL or a number
+  std::string_view joint{};  ///< its name as a joint; empty: joint_name() has the usual one
+  /// The positions of its values, in ascending order of the position. Empty: the position is the published
+  /// value.
+  Span<const AxisPosition> positions{};
+};
+
 /// One wire of the simulated chip: `from` an output `to` an input, or a square wave `to` an input.
 struct SimWire {
   std::string_view from;  ///< a coil; empty: a square wave
@@ -200,7 +216,8 @@ struct Map {
   Span<const TableRange> read_whole{};  ///< by place, none overlaps another: read whole for any point in it
   bool wait_for = false;                ///< the driver serves an action that waits for values
   Span<const Tool> tools{};             ///< in the order of the file
-  double joint_rate = 10;               ///< Hz, at which the driver publishes the positions of the tools
+  Span<const Axis> axes{};              ///< in the order of the file
+  double joint_rate = 10;               ///< Hz, at which the driver publishes the positions of tools and axes
 };
 
 /// The point of that name, or nullptr.
