@@ -25,6 +25,8 @@ std::string topic(const Map& map, std::string_view point) { return fmt::format("
 std::vector<std::unique_ptr<PointPublisher>> advertise_all(Node& node, const Map& map,
                                                            SubscriberCounts& subscribers) {
   std::vector<std::unique_ptr<PointPublisher>> result(map.points.size());
+  if (const auto line = too_many_points(map.points.size()))
+    node.log(Level::warning, fmt::format("{}: {}", map.name, *line));
   for_each_point(node, map, "have their topics", [&](std::uint32_t i) {
     if (is_readable(map.points[i]))
       result[i] = node.advertise(topic(map, map.points[i].name), map.points[i], i, subscribers);
