@@ -152,6 +152,11 @@ inline void expect_same(const Map& a, const Map& b) {
     EXPECT_EQ(a.tools[i].name, b.tools[i].name);
     expect_same_fields(a.tools[i], b.tools[i]);
   }
+  ASSERT_EQ(a.axes.size(), b.axes.size());
+  for (std::size_t i = 0; i < a.axes.size(); ++i) {
+    EXPECT_EQ(a.axes[i].name, b.axes[i].name);
+    expect_same_fields(a.axes[i], b.axes[i]);
+  }
 }
 
 }  // namespace coupler::testing

@@ -140,6 +140,7 @@ Document make_document(const Map& map, Span<const int> lines, Provenance provena
   for (std::size_t i = 0; i < map.points.size(); ++i)
     document.points.push_back(describe(map.points[i], i < lines.size() ? lines[i] : 0));
   document.tools = describe_tools(map);
+  document.axes = describe_axes(map);
   document.mbpoll = mbpoll_commands(map);
   document.ros = ros_commands(map, provenance.file);
   document.drawings = drawings_of(map);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coupler/base/span.hpp"
+#include "coupler/docs/axis_description.hpp"
 #include "coupler/docs/drawing.hpp"
 #include "coupler/docs/point_description.hpp"
 #include "coupler/docs/tool_description.hpp"
@@ -46,6 +47,7 @@ struct Document {
   std::vector<FactGroup> facts;
   std::vector<PointDescription> points;  ///< as Map::points
   std::vector<ToolDescription> tools;    ///< as Map::tools
+  std::vector<AxisDescription> axes;     ///< as Map::axes
   std::vector<Command> mbpoll;
   std::vector<Command> ros;
   std::vector<Drawing> drawings;

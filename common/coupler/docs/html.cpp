@@ -188,14 +188,16 @@ std::string drawings(const Document& document) {
   return out + "</div>\n</section>\n";
 }
 
-std::string tools(const Document& document) {
-  if (document.tools.empty()) return {};
-  std::string out = "<section id=\"tools\">\n<h2>Tools</h2>\n<div class=\"groups\">\n";
-  for (const ToolDescription& tool : document.tools) {
-    out += fmt::format("<div><h3>{}</h3>\n<dl>\n", html(tool.name));
-    for (const ToolColumn& column : tool_columns) {
-      const std::string& text = tool.*column.text;
-      if (column.text == &ToolDescription::name || text.empty()) continue;
+/// The tools, or the axes.
+template <class Description>
+std::string descriptions(std::string_view id, std::string_view title, const std::vector<Description>& all) {
+  if (all.empty()) return {};
+  std::string out = fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n<div class=\"groups\">\n", id, title);
+  for (const Description& each : all) {
+    out += fmt::format("<div><h3>{}</h3>\n<dl>\n", html(each.name));
+    for (const auto& column : used_columns(all)) {
+      const std::string& text = each.*column.text;
+      if (column.text == &Description::name || text.empty()) continue;
       out += fmt::format("<dt>{}{}</dt><dd>{}</dd>\n", static_cast<char>(column.title[0] - 'a' + 'A'),
                          column.title.substr(1), html(text));
     }
@@ -245,11 +247,12 @@ std::string html_page(const Document& document) {
          fmt::format(
              "<body>\n<a class=\"skip\" href=\"#points\">Skip to the "
              "points</a>\n<header>\n<h1>{}</h1>\n<p>{}</p>\n"
-             "<nav><a href=\"#list\">Points</a> <a href=\"#spaces\">Address spaces</a> {}{}"
+             "<nav><a href=\"#list\">Points</a> <a href=\"#spaces\">Address spaces</a> {}{}{}"
              "<a href=\"#device\">The device</a> <a href=\"#use\">How to read "
              "it</a></nav>\n</header>\n<main>\n",
              html(document.name), made_from(document),
              document.tools.empty() ? "" : "<a href=\"#tools\">Tools</a> ",
+             document.axes.empty() ? "" : "<a href=\"#axes\">Axes</a> ",
              document.drawings.empty() ? "" : "<a href=\"#order\">Bytes and bits</a> ") +
          "<section id=\"list\">\n<h2>Points</h2>\n" + search(document) + html_rows(document) +
          "<p class=\"note\">Address counts from 0, as requests carry it. Modicon counts from 1 behind the "
@@ -259,8 +262,9 @@ std::string html_page(const Document& document) {
          "<section id=\"spaces\">\n<h2>Address spaces</h2>\n<div class=\"picture\" tabindex=\"0\" "
          "role=\"region\" "
          "aria-label=\"Picture of the address spaces\">\n" +
-         document.picture + "</div>\n</section>\n" + tools(document) + drawings(document) + facts(document) +
-         use(document) + "</main>\n<script>\n" + std::string(page_script()) + "</script>\n</body>\n</html>\n";
+         document.picture + "</div>\n</section>\n" + descriptions("tools", "Tools", document.tools) +
+         descriptions("axes", "Axes", document.axes) + drawings(document) + facts(document) + use(document) +
+         "</main>\n<script>\n" + std::string(page_script()) + "</script>\n</body>\n</html>\n";
 }
 
 }  // namespace coupler::docs

@@ -95,16 +95,18 @@ void put_table(const Document& document, Table table, std::string& out) {
   }
 }
 
-void put_tools(const std::vector<ToolDescription>& tools, std::string& out) {
-  if (tools.empty()) return;
-  const std::vector<ToolColumn> used = used_columns(tools);
-  out += fmt::format("\n## Tools ({})\n\n", tools.size());
-  for (const ToolColumn& column : used) out += fmt::format("| {} ", column.title);
+/// The tools, or the axes.
+template <class Description>
+void put_descriptions(std::string_view title, const std::vector<Description>& rows, std::string& out) {
+  if (rows.empty()) return;
+  const auto used = used_columns(rows);
+  out += fmt::format("\n## {} ({})\n\n", title, rows.size());
+  for (const auto& column : used) out += fmt::format("| {} ", column.title);
   out += "|\n";
   for (std::size_t i = 0; i < used.size(); ++i) out += "|---";
   out += "|\n";
-  for (const ToolDescription& tool : tools) {
-    for (const ToolColumn& column : used) out += fmt::format("| {} ", markdown(tool.*column.text));
+  for (const Description& row : rows) {
+    for (const auto& column : used) out += fmt::format("| {} ", markdown(row.*column.text));
     out += "|\n";
   }
 }
@@ -134,7 +136,8 @@ std::string markdown_page(const Document& document) {
       "table's "
       "digit.\n";
   for (const Table table : tables) put_table(document, table, out);
-  put_tools(document.tools, out);
+  put_descriptions("Tools", document.tools, out);
+  put_descriptions("Axes", document.axes, out);
   out += "\n## The device\n\n| | |\n|---|---|\n";
   for (const FactGroup& group : document.facts)
     for (const Fact& fact : group.facts)

@@ -2,7 +2,6 @@
 #include "coupler/docs/tool_description.hpp"
 
 #include <algorithm>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -78,17 +77,6 @@ std::vector<ToolDescription> describe_tools(const Map& map) {
     if (with_joint) out.back().joint = joint(map, tool);
   }
   return out;
-}
-
-std::vector<ToolColumn> used_columns(const std::vector<ToolDescription>& tools) {
-  std::vector<ToolColumn> used;
-  std::copy_if(std::begin(tool_columns), std::end(tool_columns), std::back_inserter(used),
-               [&](const ToolColumn& column) {
-                 return std::any_of(tools.begin(), tools.end(), [&](const ToolDescription& tool) {
-                   return !(tool.*column.text).empty();
-                 });
-               });
-  return used;
 }
 
 }  // namespace coupler::docs

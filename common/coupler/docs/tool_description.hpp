@@ -2,9 +2,10 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "coupler/base/span.hpp"
+#include "coupler/docs/text_column.hpp"
 #include "coupler/map/map.hpp"
 
 namespace coupler::docs {
@@ -24,14 +25,8 @@ struct ToolDescription {
   std::string joint;    ///< "clamp_joint: open 0.04, closed 0"; empty if the map says nothing of joints
 };
 
-/// A column of a table of tools.
-struct ToolColumn {
-  std::string_view title;
-  std::string ToolDescription::*text;
-};
-
-/// In the order in which tables have them; the first one is the name.
-constexpr ToolColumn tool_columns[] = {
+/// In the order in which tables have them.
+constexpr TextColumn<ToolDescription> tool_columns[] = {
     {"tool", &ToolDescription::name},
     {"closes by", &ToolDescription::closes},
     {"opens by", &ToolDescription::opens},
@@ -45,10 +40,9 @@ constexpr ToolColumn tool_columns[] = {
     {"joint", &ToolDescription::joint},
 };
 
+constexpr Span<const TextColumn<ToolDescription>> columns_of(const ToolDescription*) { return tool_columns; }
+
 /// In the order of the map.
 std::vector<ToolDescription> describe_tools(const Map& map);
-
-/// Those that one of the tools fills.
-std::vector<ToolColumn> used_columns(const std::vector<ToolDescription>& tools);
 
 }  // namespace coupler::docs

@@ -26,6 +26,8 @@ namespace coupler::maps::{name} {{
 namespace {{
 
 using ::coupler::Access;
+using ::coupler::Axis;
+using ::coupler::AxisPosition;
 using ::coupler::Bias;
 using ::coupler::Drive;
 using ::coupler::Edge;
@@ -61,7 +63,7 @@ using namespace ::std::chrono_literals;
 template <::std::uint16_t... Words>
 constexpr ::std::uint16_t registers[] = {{Words...}};
 
-{values}{points}{sim}{tools}{allow}{roles}{unreadable}{read_whole}{sequences}// The file itself, byte by byte: the node serves it.
+{values}{points}{sim}{tools}{positions}{axes}{allow}{roles}{unreadable}{read_whole}{sequences}// The file itself, byte by byte: the node serves it.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Woverlength-strings"
 constexpr char text[] =
@@ -86,7 +88,7 @@ constexpr Map map{{
     {poll}, {changes}, {verify},
     {security},  // roles, those of clients without TLS and without a role, files, port
     {read_whole_name},
-    {wait_for}, {tools_name}, {{}}, {joint_rate},
+    {wait_for}, {tools_name}, {axes_name}, {joint_rate},
 }};
 
 }}  // namespace coupler::maps::{name}
@@ -169,6 +171,20 @@ std::string row(const Tool& tool) {
   return fmt::format("    {{{}, {}}},\n", literal(tool.name), values_of(tool));
 }
 
+std::string row(const AxisPosition& at) {
+  return fmt::format("    {{{}, {}}},\n", code(at.value), code(at.position));
+}
+
+/// The array of its positions, which stands before the axes.
+std::string positions_name(const Axis& axis, std::size_t index) {
+  return axis.positions.empty() ? "{}" : fmt::format("positions_of_axis_{}", index);
+}
+
+std::string row(const Axis& axis, std::size_t index) {
+  return fmt::format("    {{{}, {}, {}, {}}},\n", literal(axis.name), literal(axis.point),
+                     literal(axis.joint), positions_name(axis, index));
+}
+
 std::string row(const TableRange& area) {
   return fmt::format("    {{{}, Range::of({}, {})}},\n", enumerator(area.table), area.range.start(),
                      area.range.count());
@@ -241,7 +257,7 @@ std::string array(std::string_view declaration, std::string_view fields, Span<co
   if (elements.empty()) return {};
   std::string rows;
   for (std::size_t i = 0; i < elements.size(); ++i) {
-    if constexpr (std::is_same_v<T, Point>)
+    if constexpr (std::is_same_v<T, Point> || std::is_same_v<T, Axis>)
       rows += row(elements[i], i);
     else
       rows += row(elements[i]);
@@ -258,6 +274,14 @@ std::string values(const Map& map) {
     out += array("RawRange " + invalid_name(point, i), comment(point.name) + ": what is no value.",
                  point.invalid);
   }
+  return out;
+}
+
+std::string positions(const Map& map) {
+  std::string out;
+  for (std::size_t i = 0; i < map.axes.size(); ++i)
+    out += array("AxisPosition " + positions_name(map.axes[i], i),
+                 comment(map.axes[i].name) + ": the positions of its values.", map.axes[i].positions);
   return out;
 }
 
@@ -285,7 +309,9 @@ std::string table_source(const Map& map, const Provenance& provenance) {
                 map.points)),
       arg("values", values(map)), arg("sim", array("SimWire sim", keys_of<SimWire>(), map.sim)),
       arg("tools", array("Tool tools", "name, " + keys_of<Tool>(), map.tools)),
-      arg("tools_name", map.tools.empty() ? "{}" : "tools"),
+      arg("tools_name", map.tools.empty() ? "{}" : "tools"), arg("positions", positions(map)),
+      arg("axes", array("Axis axes", "name, " + keys_of<Axis>(), map.axes)),
+      arg("axes_name", map.axes.empty() ? "{}" : "axes"),
       arg("allow", array("::std::string_view allow", "Who may connect.", map.service.allow)),
       arg("unreadable", array("TableRange unreadable", "What is never read.", map.unreadable)),
       arg("unreadable_name", map.unreadable.empty() ? "{}" : "unreadable"),

@@ -54,6 +54,14 @@ inline std::string written(const JointPositions& positions) {
   return fmt::format("{{open: {}, closed: {}}}", positions.open, positions.closed);
 }
 
+/// "{0: 0, 1: 0.5}"
+inline std::string written(Span<const AxisPosition> positions) {
+  std::string text;
+  for (const auto& [value, position] : positions)
+    text += fmt::format("{}{}: {}", text.empty() ? "{" : ", ", value, position);
+  return text.empty() ? text : text + '}';
+}
+
 /// The subject of a key of a point.
 enum class About { point, reading, writing };
 
@@ -210,6 +218,13 @@ constexpr auto fields_of(const Tool*) {
                          field("direct", &Tool::direct, change), field("joint", &Tool::joint, change),
                          field("positions", &Tool::positions, change),
                          field("on_cancel", &Tool::on_cancel, change));
+}
+
+/// And `name`.
+constexpr auto fields_of(const Axis*) {
+  constexpr std::string_view change = "axis-changed";
+  return std::make_tuple(field("point", &Axis::point, change), field("joint", &Axis::joint, change),
+                         field("positions", &Axis::positions, change));
 }
 
 constexpr auto fields_of(const JointPositions*) {

@@ -173,6 +173,17 @@ struct AxisPosition {
   double position = 0;
 };
 
+constexpr bool operator==(const AxisPosition& a, const AxisPosition& b) {
+  return a.value == b.value && a.position == b.position;
+}
+constexpr bool operator==(Span<const AxisPosition> a, Span<const AxisPosition> b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (!(a[i] == b[i])) return false;
+  return true;
+}
+constexpr bool operator!=(Span<const AxisPosition> a, Span<const AxisPosition> b) { return !(a == b); }
+
 /// An output as a joint of a trajectory.
 struct Axis {
   std::string_view name;

@@ -54,6 +54,15 @@ Span<const Tool> OwnedMap::keep(const std::vector<Tool>& tools) {
   return tools_;
 }
 
+Span<const AxisPosition> OwnedMap::keep(const std::vector<AxisPosition>& positions) {
+  return positions_.emplace_back(positions.begin(), positions.end());
+}
+
+Span<const Axis> OwnedMap::keep(const std::vector<Axis>& axes) {
+  axes_.assign(axes.begin(), axes.end());
+  return axes_;
+}
+
 void OwnedMap::finish(Map head, const std::vector<Point>& points, const std::vector<SimWire>& sim) {
   points_.assign(points.begin(), points.end());
   sim_.assign(sim.begin(), sim.end());

@@ -40,6 +40,8 @@ class OwnedMap {
   /// Keeps a copy of a role's rights.
   Span<const std::uint8_t> keep(const std::vector<std::uint8_t>& rights);
   Span<const Tool> keep(const std::vector<Tool>& tools);
+  Span<const AxisPosition> keep(const std::vector<AxisPosition>& positions);
+  Span<const Axis> keep(const std::vector<Axis>& axes);
 
   /// Ends the building: sorts the points and fills in fingerprint and checksum. `head` brings all fields but
   /// those and `points` and `sim`; its views, and those of points and wires, must point into what was kept
@@ -57,6 +59,8 @@ class OwnedMap {
   std::pmr::vector<Role> roles_;
   std::pmr::deque<std::pmr::vector<std::uint8_t>> rights_;
   std::pmr::vector<Tool> tools_;
+  std::pmr::deque<std::pmr::vector<AxisPosition>> positions_;
+  std::pmr::vector<Axis> axes_;
   std::pmr::vector<Point> points_;
   std::pmr::vector<SimWire> sim_;
   Map map_;

@@ -37,6 +37,7 @@ FieldMap::FieldMap(const Map& node)
   map_.points = {points_.data(), points_.size()};
   map_.sim = {};
   map_.tools = {};
+  map_.axes = {};
   map_.connection.unit = field_unit;
   map_.limits.mask_write = false;
   map_.changes = false;

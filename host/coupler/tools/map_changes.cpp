@@ -124,21 +124,25 @@ std::unordered_map<Key, const Element*> indexed(Span<const Element> elements, Ke
   return index;
 }
 
-/// Adds the changes of the tools, which are matched by name.
-void add_tools(const Map& older, const Map& newer, std::vector<Change>& changes) {
-  const auto name_of = [](const Tool& tool) { return tool.name; };
-  const auto old_tools = indexed<std::string_view>(older.tools, name_of);
-  const auto new_tools = indexed<std::string_view>(newer.tools, name_of);
+/// Adds the changes of the tools or the axes, which are matched by name. `one`: "tool".
+template <class ToolOrAxis>
+void add_named(std::string_view one, Span<const ToolOrAxis> older, Span<const ToolOrAxis> newer,
+               std::vector<Change>& changes) {
+  const auto name_of = [](const ToolOrAxis& each) { return each.name; };
+  const auto old_ones = indexed<std::string_view>(older, name_of);
+  const auto new_ones = indexed<std::string_view>(newer, name_of);
   constexpr Severity severity = Severity::compatible;
-  for (const Tool& tool : older.tools) {
-    if (const auto found = new_tools.find(tool.name); found != new_tools.end())
-      add_fields(tool, *found->second, tool.name, changes);
+  for (const ToolOrAxis& each : older) {
+    if (const auto found = new_ones.find(each.name); found != new_ones.end())
+      add_fields(each, *found->second, each.name, changes);
     else
-      changes.push_back({"tool-removed", severity, std::string(tool.name), tool_text(tool), {}});
+      changes.push_back(
+          {fmt::format("{}-removed", one), severity, std::string(each.name), described(each), {}});
   }
-  for (const Tool& tool : newer.tools)
-    if (old_tools.count(tool.name) == 0)
-      changes.push_back({"tool-added", severity, std::string(tool.name), {}, tool_text(tool)});
+  for (const ToolOrAxis& each : newer)
+    if (old_ones.count(each.name) == 0)
+      changes.push_back(
+          {fmt::format("{}-added", one), severity, std::string(each.name), {}, described(each)});
 }
 
 using PointsByName = std::unordered_map<std::string_view, const Point*>;
@@ -189,7 +193,8 @@ std::vector<Change> compare(const Map& older, const Map& newer) {
   std::vector<Change> changes;
   add_details(older, newer, {}, changes);
   add_all_fields(older, newer, changes);
-  add_tools(older, newer, changes);
+  add_named("tool", older.tools, newer.tools, changes);
+  add_named("axis", older.axes, newer.axes, changes);
   const std::vector<Difference> contract = diff(older, newer);
   const auto differences = indexed<std::string_view>(
       Span<const Difference>(contract), [](const Difference& d) -> std::string_view { return d.point; });

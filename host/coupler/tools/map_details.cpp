@@ -90,6 +90,16 @@ std::string sim_text(const Map& map) {
   return text;
 }
 
+/// The fields that differ from their defaults.
+template <class Struct>
+std::string given_fields(const Struct& object) {
+  std::string text;
+  for_each_field(object, Struct{}, [&](const auto& field, const auto& value, const auto& usual) {
+    if (value != usual) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", field.key, written(value));
+  });
+  return text;
+}
+
 std::string security_text(const Map& map) {
   std::string text;
   for (const Role& role : map.security.roles)
@@ -129,13 +139,8 @@ std::vector<Detail> details_of(const Point& point) {
   };
 }
 
-std::string tool_text(const Tool& tool) {
-  std::string text;
-  for_each_field(tool, Tool{}, [&](const auto& field, const auto& value, const auto& usual) {
-    if (value != usual) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", field.key, written(value));
-  });
-  return text;
-}
+std::string described(const Tool& tool) { return given_fields(tool); }
+std::string described(const Axis& axis) { return given_fields(axis); }
 
 std::vector<Detail> details_of(const Map& map) {
   const Span<const std::string_view> allow = map.service.allow;

@@ -21,10 +21,11 @@ struct Detail {
 /// The same rules in the same order for every point.
 std::vector<Detail> details_of(const Point& point);
 
-/// Returns what the map says of a tool, but for its name.
-std::string tool_text(const Tool& tool);
+/// Returns what the map says of a tool or an axis, but for its name.
+std::string described(const Tool& tool);
+std::string described(const Axis& axis);
 
-/// The same rules in the same order for every map; of the map itself, not of its points and tools.
+/// The same rules in the same order for every map; of the map itself, not of its points, tools and axes.
 std::vector<Detail> details_of(const Map& map);
 
 }  // namespace coupler::tools

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "coupler/docs/axis_description.hpp"
 #include "coupler/docs/tool_description.hpp"
 #include "coupler/json/json_text.hpp"
 #include "coupler/map/fields.hpp"
@@ -86,19 +87,19 @@ std::string not_read_text(const Map& map) {
   return text.empty() ? text : "\n" + text;
 }
 
-/// A table; empty if the map has no tool.
-std::string tools_text(const Map& map) {
-  if (map.tools.empty()) return {};
-  const std::vector<docs::ToolDescription> tools = docs::describe_tools(map);
-  std::vector<std::string> lines(1 + tools.size());
-  for (const docs::ToolColumn& column : docs::used_columns(tools)) {
+/// A table of the tools or the axes; empty if the map has none.
+template <class Description>
+std::string table_text(std::string_view title, const std::vector<Description>& rows) {
+  if (rows.empty()) return {};
+  std::vector<std::string> lines(1 + rows.size());
+  for (const auto& column : docs::used_columns(rows)) {
     std::size_t width = column.title.size();
-    for (const docs::ToolDescription& tool : tools) width = std::max(width, (tool.*column.text).size());
+    for (const Description& row : rows) width = std::max(width, (row.*column.text).size());
     lines[0] += fmt::format("  {:<{}}", column.title, width);
-    for (std::size_t i = 0; i < tools.size(); ++i)
-      lines[1 + i] += fmt::format("  {:<{}}", tools[i].*column.text, width);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      lines[1 + i] += fmt::format("  {:<{}}", rows[i].*column.text, width);
   }
-  std::string text = "\nTools:\n";
+  std::string text = fmt::format("\n{}:\n", title);
   for (const std::string& line : lines) text += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
   return text;
 }
@@ -161,6 +162,16 @@ ordered_json tool_json(const Map& map, const Tool& tool) {
   ordered_json json{{"name", tool.name}};
   json.update(fields_json(tool));
   json["joint"] = joint_name(map, tool);
+  return json;
+}
+
+ordered_json axis_json(const Map& map, const Axis& axis) {
+  ordered_json json{{"name", axis.name},
+                    {"point", axis.point},
+                    {"joint", joint_name(map, axis)},
+                    {"positions", ordered_json::array()}};
+  for (const auto& [value, position] : axis.positions)
+    json["positions"].push_back({{"value", value}, {"position", position}});
   return json;
 }
 
@@ -233,7 +244,8 @@ std::string plan_text(const std::string& file, const Map& map, const plan::Netwo
                   counted(requests, "request"), milliseconds_text(timing.round_trip),
                   timing.pause.count() > 0 ? " and a pause of " + milliseconds_text(timing.pause) : "");
   for (const plan::GroupPlan& group : groups) text += "\n" + group_text(group, map, timing);
-  return text + not_read_text(map) + tools_text(map) + strategies_text(map, timing);
+  return text + not_read_text(map) + table_text("Tools", docs::describe_tools(map)) +
+         table_text("Axes", docs::describe_axes(map)) + strategies_text(map, timing);
 }
 
 std::string plan_json(const std::string& file, const Map& map, const plan::NetworkTiming& timing) {
@@ -248,12 +260,14 @@ std::string plan_json(const std::string& file, const Map& map, const plan::Netwo
                     {"groups", ordered_json::array()},
                     {"not_read", ordered_json::array()},
                     {"tools", ordered_json::array()},
+                    {"axes", ordered_json::array()},
                     {"strategies", ordered_json::array()}};
   for (const plan::GroupPlan& group : groups) json["groups"].push_back(group_json(group, map, timing));
   for (const Point& point : map.points)
     if (const auto reason = plan::why_not_read(map, point))
       json["not_read"].push_back({{"point", point.name}, {"reason", plan::to_string(*reason)}});
   for (const Tool& tool : map.tools) json["tools"].push_back(tool_json(map, tool));
+  for (const Axis& axis : map.axes) json["axes"].push_back(axis_json(map, axis));
   for (const plan::Strategy& strategy : plan::compare_strategies(map, timing))
     json["strategies"].push_back(strategy_json(strategy));
   return json_text(json);

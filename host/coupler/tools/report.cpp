@@ -70,9 +70,12 @@ ordered_json to_json(const Diagnostic& diagnostic) {
 
 std::string summary(const std::string& file, const Map& map) {
   const auto tools = static_cast<std::ptrdiff_t>(map.tools.size());
-  return fmt::format("{}: ok: {}, {}{}{}, fingerprint {}", printable(file), map.name,
+  const std::size_t axes = map.axes.size();
+  return fmt::format("{}: ok: {}, {}{}{}{}, fingerprint {}", printable(file), map.name,
                      counted(static_cast<std::ptrdiff_t>(map.points.size()), "point"), by_table(map),
-                     tools == 0 ? "" : ", " + counted(tools, "tool"), fingerprint_text(map.fingerprint));
+                     tools == 0 ? "" : ", " + counted(tools, "tool"),
+                     axes == 0 ? "" : fmt::format(", {} {}", axes, axes == 1 ? "axis" : "axes"),
+                     fingerprint_text(map.fingerprint));
 }
 
 std::string moveit_margin(const Map& map) {

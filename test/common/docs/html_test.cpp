@@ -96,6 +96,24 @@ TEST(Html, All_joints_are_shown_if_the_map_sets_joint_or_positions_of_one_tool) 
                     HasSubstr("<dt>Joint</dt><dd>device/clamp: open 1, closed 0</dd>")));
 }
 
+TEST(Html, Axes_have_a_section_if_there_are_any) {
+  auto builder = fakes::MapBuilder();
+  builder.add(Table::holding_registers, "speed", 0, codec::Type::INT, [](Point& point) {
+    static constexpr NamedValue values[] = {{0, "idle"}, {3, "fast"}};
+    point.values = values;
+  });
+  EXPECT_THAT(html_page(of(builder)), Not(HasSubstr("#axes")));
+  const AxisPosition positions[] = {{0, 0}, {3, 1.5}};
+  const Axis belt{"belt", "speed", {}, positions};
+  builder.head().axes = {&belt, 1};
+  const std::string page = html_page(of(builder));
+  EXPECT_THAT(page, HasSubstr("<a href=\"#axes\">Axes</a>"));
+  EXPECT_THAT(page, HasSubstr("<section id=\"axes\">\n<h2>Axes</h2>\n<div class=\"groups\">\n"
+                              "<div><h3>belt</h3>\n<dl>\n<dt>Point</dt><dd>speed</dd>\n"
+                              "<dt>Joint</dt><dd>device/belt</dd>\n"
+                              "<dt>Positions</dt><dd>idle at 0, fast at 1.5</dd>\n</dl>"));
+}
+
 TEST(Html, A_map_without_points_has_a_page) {
   EXPECT_THAT(html_page(of(fakes::MapBuilder())), HasSubstr("<table id=\"points\">"));
 }

@@ -97,5 +97,21 @@ TEST(Markdown, Tools_have_a_table_if_there_are_any) {
               HasSubstr("| after 2 s | opens | cell/gripper\\: open 0.04, closed 0 |\n"));
 }
 
+TEST(Markdown, Axes_have_a_table_if_there_are_any) {
+  auto builder = fakes::MapBuilder("cell").coil("valve", 0);
+  builder.add(Table::holding_registers, "speed", 0, codec::Type::INT);
+  EXPECT_THAT(markdown_page(make_document(builder.build()->map(), {}, {"cell.yaml", "", "1.2.3"})),
+              Not(HasSubstr("Axes")));
+  const AxisPosition positions[] = {{1, -0.5}, {0, 0}};
+  const Axis axes[] = {{"glue", "valve", "glue_joint", positions}, {"belt", "speed"}};
+  builder.head().axes = axes;
+  EXPECT_THAT(markdown_page(make_document(builder.build()->map(), {}, {"cell.yaml", "", "1.2.3"})),
+              HasSubstr("\n## Axes (2)\n\n"
+                        "| axis | point | joint | positions |\n"
+                        "|---|---|---|---|\n"
+                        "| glue | valve | glue\\_joint | on at -0.5, off at 0 |\n"
+                        "| belt | speed | cell/belt | the published value |\n"));
+}
+
 }  // namespace
 }  // namespace coupler::docs

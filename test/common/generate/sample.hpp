@@ -71,6 +71,15 @@ inline std::shared_ptr<const OwnedMap> sample() {
   clamp.positions.open = 0.04;
   clamp.on_cancel = OnCancel::open;
   head.tools = owned->keep(std::vector<Tool>{clamp});
+  Axis glue;
+  glue.name = "glue";
+  glue.point = "flag";
+  glue.joint = "glue_joint";
+  glue.positions = owned->keep(std::vector<AxisPosition>{{1, -0.5}, {0, 0.25}});
+  Axis flow;
+  flow.name = "flow";
+  flow.point = "level";
+  head.axes = owned->keep(std::vector<Axis>{glue, flow});
   owned->finish(head, {lamp, button, level, label, flag, parts},
                 {{"lamp", "button", true, 0us}, {"", "button", false, 1000000us}});
   return owned;

@@ -61,7 +61,15 @@ TEST(Table, Tools_are_rows) {
   EXPECT_THAT(source(),
               AllOf(HasSubstr("    {\"clamp\", \"lamp\", \"\", \"button\", \"\", \"\", 300ms, 2000ms, "
                               "0ms, true, OnEmpty::abort, false, \"\", {0.04, 0.0}, OnCancel::open},\n"),
-                    HasSubstr("    false, tools, 10.0,\n};")));
+                    HasSubstr("    false, tools, axes, 10.0,\n};")));
+}
+
+TEST(Table, Axes_are_rows_with_arrays_of_positions_before_them) {
+  EXPECT_THAT(
+      source(),
+      AllOf(HasSubstr("constexpr AxisPosition positions_of_axis_0[] = {\n    {1, -0.5},\n    {0, 0.25},\n};"),
+            HasSubstr("constexpr Axis axes[] = {\n    {\"glue\", \"flag\", \"glue_joint\", "
+                      "positions_of_axis_0},\n    {\"flow\", \"level\", \"\", {}},\n};")));
 }
 
 TEST(Table, Connection_polling_and_limits_are_in_it) {
@@ -110,7 +118,8 @@ TEST(Table, A_map_without_points_has_no_empty_arrays) {
   empty.finish({}, {}, {});
   EXPECT_THAT(table_source(empty.map(), testing::provenance),
               AllOf(Not(HasSubstr("points[]")), Not(HasSubstr("sim[]")), Not(HasSubstr("tools[]")),
-                    Not(HasSubstr("allow[]")), HasSubstr("    {},\n    {},\n    fingerprint,\n")));
+                    Not(HasSubstr("axes[]")), Not(HasSubstr("allow[]")),
+                    HasSubstr("    {},\n    {},\n    fingerprint,\n")));
 }
 
 TEST(Table, The_header_carries_fingerprint_and_model_version) {

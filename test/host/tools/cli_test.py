@@ -179,6 +179,10 @@ class Check(Cli):
         text = GOOD.replace("mapping:", "tools: {press: {close: lamp, travel: 1s}}\nmapping:")
         self.assertIn(" 1 input register), 1 tool, fingerprint ", self.coupler("check", self.file("cell.yaml", text)).stdout)
 
+    def test_axes_are_counted(self):
+        text = GOOD.replace("mapping:", "axes: {glue: {point: lamp}}\nmapping:")
+        self.assertIn(" 1 input register), 1 axis, fingerprint ", self.coupler("check", self.file("cell.yaml", text)).stdout)
+
     def test_a_bad_map_is_told_with_its_place(self):
         done = self.coupler("check", self.file("cell.yaml", BAD))
         self.assertEqual((done.returncode, done.stdout), (1, ""))

@@ -147,6 +147,20 @@ TEST(Changes, Tools_are_told_by_their_names) {
               ElementsAre("compatible joint-rate-changed : 10 Hz -> 25 Hz"));
 }
 
+TEST(Changes, Axes_are_told_by_their_names) {
+  const std::string glue = replaced(cell, "rate: 10", "rate: 10\naxes: {glue: {point: lamp}}");
+  EXPECT_THAT(changes_between(cell, glue),
+              ElementsAre("compatible axis-added glue:  -> point lamp, positions {0: 0, 1: 1}"));
+  EXPECT_THAT(changes_between(glue, cell),
+              ElementsAre("compatible axis-removed glue: point lamp, positions {0: 0, 1: 1} -> "));
+  EXPECT_THAT(changes_between(glue, replaced(glue, "lamp}", "lamp, joint: z, positions: {on: 0, off: 1}}")),
+              ElementsAre("compatible axis-changed glue: joint none, positions {0: 0, 1: 1} -> "
+                          "joint z, positions {1: 0, 0: 1}"));
+  EXPECT_THAT(changes_between(glue, replaced(glue, "lamp}", "speed}")),
+              ElementsAre("compatible axis-changed glue: point lamp, positions {0: 0, 1: 1} -> "
+                          "point speed, positions none"));
+}
+
 TEST(Changes, How_the_host_writes_a_point_is_compatible) {
   EXPECT_THAT(changes_by("units: rpm", "units: rpm, priority: high"),
               ElementsAre("compatible write-changed speed: priority normal -> priority high"));

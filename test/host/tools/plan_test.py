@@ -89,6 +89,18 @@ class Plan(Cli):
         self.assertNotIn("Tools", self.plan().stdout)
         self.assertEqual(self.json()["tools"], [])
 
+    def test_shows_the_axes(self):
+        text = SPREAD.replace("mapping:", "axes: {glue: {point: lamp, joint: z, positions: {off: 0, on: -0.5}}, belt: {point: horn}}\nmapping:")
+        self.assertIn("\nAxes:\n"
+                      "  axis  point  joint      positions\n"
+                      "  glue  lamp   z          on at -0.5, off at 0\n"
+                      "  belt  horn   cell/belt  off at 0, on at 1\n", self.plan(text=text).stdout)
+        self.assertEqual(self.json(text=text)["axes"][0], {
+            "name": "glue", "point": "lamp", "joint": "z",
+            "positions": [{"value": 1, "position": -0.5}, {"value": 0, "position": 0}]})
+        self.assertNotIn("Axes", self.plan().stdout)
+        self.assertEqual(self.json()["axes"], [])
+
     def test_does_not_cross_what_is_unreadable(self):
         text = SPREAD.replace("mapping:", "registers_read_continuous: true\n"
                               "unreadable: [{table: holding_registers, from: 4, to: 5}]\nmapping:")

@@ -270,7 +270,10 @@ constexpr Key keys[] = {
     project("tools", S::map, K::named, "{clamp: {close: valve, travel: 300ms}}",
             "what the driver opens and closes: grippers, clamps, cylinders, vacuum cups")
         .holds(S::tool),
-    project("joint_rate", S::map, K::number, "25", "at how many Hz the driver publishes the tools as joints")
+    project("axes", S::map, K::named, "{glue: {point: valve}}", "outputs that are joints of a trajectory")
+        .holds(S::axis),
+    project("joint_rate", S::map, K::number, "25",
+            "at how many Hz the driver publishes the positions of tools and axes")
         .otherwise("10")
         .within(0.1, 1000),
     project("unreadable", S::map, K::section, "[{table: coils, from: 8, to: 15}]",
@@ -315,6 +318,11 @@ constexpr Key keys[] = {
         .otherwise("1"),
     project("closed", S::positions, K::number, "0.01", "the joint's position where the tool is closed")
         .otherwise("0"),
+    // `axes:`
+    project("point", S::axis, K::text, "valve", "the output: a BOOL or a number").needed(),
+    project("joint", S::axis, K::text, "belt_joint", "its name as a joint; NAME/AXIS if not given"),
+    project("positions", S::axis, K::positions, "{off: 0, on: 1}",
+            "the positions of its values; if not given, a number's position is the published value"),
     // `scale:`, `iio:`, `pwm:`, `deadman:`
     project("gain", S::scale, K::number, "0.1", "raw is multiplied by it").otherwise("1"),
     project("offset", S::scale, K::number, "-40", "and this is added").otherwise("0"),

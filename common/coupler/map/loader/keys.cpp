@@ -31,6 +31,7 @@ std::string_view describe(Section section) {
     case Section::tls: return "'tls'";
     case Section::tool: return "a tool";
     case Section::positions: return "'positions'";
+    case Section::axis: return "an axis";
     case Section::none: break;
   }
   return "nothing";

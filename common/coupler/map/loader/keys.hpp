@@ -40,7 +40,8 @@ enum class Section : std::uint32_t {
   tls = 1U << 21U,
   tool = 1U << 22U,       ///< one of `tools:`
   positions = 1U << 23U,  ///< `positions:` of a tool
-  last = positions
+  axis = 1U << 24U,       ///< one of `axes:`
+  last = axis
 };
 constexpr Section operator|(Section a, Section b) {
   return static_cast<Section>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
@@ -75,6 +76,7 @@ enum class ValueKind : std::uint8_t {
   ends,        ///< a list of two different numbers
   raw_values,  ///< bits of the point's type: numbers, and lists of two numbers that are a range
   names,       ///< integer -> identifier
+  positions,   ///< value of a point -> number
   points,      ///< name -> point: a map as Key::inside says; for bits just an address is good
   named,       ///< name -> a map as Key::inside says
   patterns,    ///< all, none, or a list of names of points, with '*' and '?'

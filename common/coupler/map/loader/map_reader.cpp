@@ -181,11 +181,16 @@ std::optional<MapLayout> read_map(const Entry& file, const MapSource& source, Pl
   check_broadcast(top, points, head, context);
   check_reserved(reserved, points, context);
   head.security = read_security(top, points, head.connection.port, context);
-  const std::vector<Tool> tools = read_tools(top, points, head, context);
+  Joints joints(context);
+  const std::vector<Tool> tools = read_tools(top, points, head, joints, context);
+  const std::vector<Axis> axes = read_axes(top, points, head, tools, joints, context);
+  warn_of_tool_names(points, tools, context);
+  if (!tools.empty() || !axes.empty()) warn_of_joint_names(points, context);
   if (problems.has_errors()) return std::nullopt;
   head.unreadable = map.keep(by_place(unreadable));
   head.read_whole = map.keep(by_place(whole));
   head.tools = map.keep(tools);
+  head.axes = map.keep(axes);
   return finish(head, points, sim, source.text, defaults.addressing, map);
 }
 

@@ -7,6 +7,7 @@
 
 #include "coupler/map/loader/address.hpp"
 #include "coupler/map/loader/draft_point.hpp"
+#include "coupler/map/loader/joints.hpp"
 #include "coupler/map/loader/placement.hpp"
 #include "coupler/map/loader/preset.hpp"
 #include "coupler/map/loader/reader.hpp"
@@ -47,8 +48,13 @@ std::vector<SimWire> read_sim(const Reader& top, const DraftPoints& points, cons
 
 /// `tools:`, in the order of the file. Their names are parts of ROS names; each has outputs of its own, and a
 /// sensor or a time for each of its ends, and is a joint of its own.
-std::vector<Tool> read_tools(const Reader& top, const DraftPoints& points, const Map& head,
+std::vector<Tool> read_tools(const Reader& top, const DraftPoints& points, const Map& head, Joints& joints,
                              const Context& context);
+
+/// `axes:`, in the order of the file. Each has a point of its own that no tool drives, and is a joint of its
+/// own.
+std::vector<Axis> read_axes(const Reader& top, const DraftPoints& points, const Map& head,
+                            const std::vector<Tool>& tools, Joints& joints, const Context& context);
 
 /// `watchdog:` of a map with `preset`: there it is the coupler's own, and leaves `head.service`. Without a
 /// preset it is the node's, and stays.

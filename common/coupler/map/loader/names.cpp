@@ -134,7 +134,6 @@ void check_point_names(const DraftPoints& points, bool has_wait_for, const Conte
 }
 
 void warn_of_tool_names(const DraftPoints& points, const std::vector<Tool>& tools, const Context& context) {
-  if (tools.empty()) return;
   for (const Tool& tool : tools) {
     const std::string state = fmt::format("{}/state", tool.name);
     const std::string actions[] = {fmt::format("{}/{}", tool.name, gripper_action),
@@ -149,10 +148,17 @@ void warn_of_tool_names(const DraftPoints& points, const std::vector<Tool>& tool
         if (takes_place_of(draft.point.name, action)) warn_of(draft.name_at, action, "an action");
     }
   }
-  for (const DraftPoint& draft : points)
+}
+
+void warn_of_joint_names(const DraftPoints& points, const Context& context) {
+  for (const DraftPoint& draft : points) {
     if (draft.point.name == joint_states_topic)
-      warn_of_taken_place(draft.name_at, joint_states_topic, "the topic with the positions of the tools",
+      warn_of_taken_place(draft.name_at, joint_states_topic, "the topic with the positions of tools and axes",
                           "give the point another name if programs need that topic", context);
+    if (takes_place_of(draft.point.name, trajectory_action))
+      warn_of_taken_place(draft.name_at, trajectory_action, "the action that moves tools and axes",
+                          "give the point another name if programs need that action", context);
+  }
 }
 
 }  // namespace coupler::loader

@@ -26,7 +26,10 @@ void check_map_name(std::string_view name, Position at, const Context& context);
 /// `has_wait_for`: the driver is to serve that action.
 void check_point_names(const DraftPoints& points, bool has_wait_for, const Context& context);
 
-/// Warns of points that take the place of what the driver serves for the tools.
+/// Warns of points that take the place of what the driver serves for each of the tools.
 void warn_of_tool_names(const DraftPoints& points, const std::vector<Tool>& tools, const Context& context);
+
+/// Warns of points that take the place of what it serves for all tools and axes together.
+void warn_of_joint_names(const DraftPoints& points, const Context& context);
 
 }  // namespace coupler::loader

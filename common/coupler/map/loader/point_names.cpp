@@ -33,6 +33,19 @@ const DraftPoint* PointNames::find(std::string_view name, Position at,
   return nullptr;
 }
 
+const Entry* PointNames::check(const Reader& reader, std::string_view key, const Eligible& eligible,
+                               const Context& context) const {
+  const Entry* value = reader.find(key);
+  if (value == nullptr || value->kind != Entry::Kind::scalar) return nullptr;  // a problem already
+  const DraftPoint* draft = find(value->text, value->at, eligible.is_meant, eligible.expected, context);
+  if (draft == nullptr || !draft->placed) return nullptr;
+  auto hindrance = eligible.why_not(*draft);
+  if (!hindrance) return value;
+  context.problems.error(value->at, fmt::format("{} {}", shown(value->text), hindrance->what),
+                         std::move(hindrance->remedy));
+  return nullptr;
+}
+
 const Point* PointNames::find(std::string_view name, Table table, Position at, std::string remedy,
                               const Context& context) const {
   const std::string_view expected = table == Table::coils ? "a coil" : "a discrete input";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -10,6 +11,19 @@
 #include "coupler/map/loader/reader.hpp"
 
 namespace coupler::loader {
+
+/// Says why a point is not one that a key can name; `what` goes behind its name.
+struct Hindrance {
+  std::string what;
+  std::string remedy;
+};
+
+/// The points that a key may name.
+struct Eligible {
+  std::function<bool(const Point&)> is_meant;  ///< for suggestions
+  std::string_view expected;                   ///< "a coil": what to write the name of
+  std::function<std::optional<Hindrance>(const DraftPoint&)> why_not;
+};
 
 /// The points by name, for keys that name other points.
 class PointNames {
@@ -24,6 +38,11 @@ class PointNames {
   const DraftPoint* find(std::string_view name, Position at,
                          const std::function<bool(const Point&)>& is_meant, std::string_view expected,
                          const Context& context) const;
+
+  /// Returns the key's value if it names a point without a hindrance; otherwise that is a problem, unless the
+  /// key is absent.
+  const Entry* check(const Reader& reader, std::string_view key, const Eligible& eligible,
+                     const Context& context) const;
 
   /// The point of that name in that table, which is one of bits. nullptr if there is none, which is a
   /// problem; `remedy` is for a point in another table.

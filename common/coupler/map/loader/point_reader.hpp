@@ -90,5 +90,8 @@ void check_edges(const DraftPoints& points, Span<const SimWire> sim, const Conte
 /// values must be known.
 Span<const std::uint16_t> read_value(std::string_view key, const Entry& entry, const Point& point,
                                      const Context& context);
+/// The same, which the map does not keep.
+std::vector<std::uint16_t> registers_of(std::string_view key, const Entry& entry, const Point& point,
+                                        const Context& context);
 
 }  // namespace coupler::loader

@@ -233,9 +233,11 @@ void check_broadcast(const Reader& top, const DraftPoints& points, const Map& he
     context.problems.error(top.find("watchdog")->key_at,
                            "the device's 'watchdog' needs answers, but 'unit: 0' is a broadcast",
                            "remove 'watchdog', or give the map the device's own unit, 1 to 247");
-  if (const Entry* tools = top.find("tools"))
-    context.problems.error(tools->key_at, "'tools' need answers, but 'unit: 0' is a broadcast",
-                           "remove 'tools', or give the map the device's own unit, 1 to 247");
+  for (const std::string_view key : {"tools", "axes"})
+    if (const Entry* given = top.find(key))
+      context.problems.error(
+          given->key_at, fmt::format("'{}' need answers, but 'unit: 0' is a broadcast", key),
+          fmt::format("remove '{}', or give the map the device's own unit, 1 to 247", key));
   for (const DraftPoint& draft : points)
     if (needs_answers(draft.point, head.limits))
       context.problems.error(

@@ -35,7 +35,7 @@ void check_whole_areas(const Areas& whole, const Areas& unreadable, const DraftP
                        const Map& head, const Context& context);
 
 /// To a broadcast points are written, and nothing is read. A tool's output is off, as the device has
-/// acknowledged, before the other goes on.
+/// acknowledged, before the other goes on; and the goal of an axis ends when its writes are acknowledged.
 void check_broadcast(const Reader& top, const DraftPoints& points, const Map& head, const Context& context);
 
 /// No point stands in a reserved area.

@@ -6,15 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "coupler/map/joint.hpp"
+#include "coupler/map/loader/joints.hpp"
 #include "coupler/map/loader/map_reader.hpp"
-#include "coupler/map/loader/names.hpp"
 #include "coupler/map/loader/point_names.hpp"
-#include "coupler/map/loader/tool_joints.hpp"
 
 namespace coupler::loader {
 namespace {
-
-constexpr std::size_t most_tools = 64;
 
 constexpr std::string_view output_keys[] = {"close", "open"};
 constexpr std::string_view sensor_keys[] = {"closed", "opened", "holds"};
@@ -36,12 +34,6 @@ bool is_held(const Point& point) {
   return point.safe == Safe::hold || (!holds_bits(point.table) && point.safe_value.empty());
 }
 
-/// Says why a point cannot be part of a tool; `what` goes behind its name.
-struct Hindrance {
-  std::string what;
-  std::string remedy;
-};
-
 std::optional<Hindrance> no_single_bit(const Point& point, std::string_view key, std::string_view expected) {
   if (is_single_bit(point)) return std::nullopt;
   return Hindrance{fmt::format("{}, and '{}' is a single bit",
@@ -58,14 +50,29 @@ std::optional<Hindrance> no_sensor(const DraftPoint& draft, std::string_view key
                    "remove 'access', or write the name of another point"};
 }
 
+/// Checks that the two ends have different positions: otherwise a goal could not tell them apart.
+void check_positions(const Reader& reader, const Tool& tool, const Context& context) {
+  const Entry* given = reader.find("positions");
+  if (given == nullptr || tool.positions.open != tool.positions.closed) return;
+  std::string what = fmt::format("'open' and 'closed' are both {}", tool.positions.open);
+  if (given->children.size() == 1) {
+    const std::string& key = given->children[0].key;
+    what = fmt::format("'{}' is {}, as '{}' is if not given", key, tool.positions.open,
+                       key == "open" ? "closed" : "open");
+  }
+  context.problems.error(
+      given->at, std::move(what),
+      fmt::format("write two positions, as in 'positions: {}'", reader.example("positions")));
+}
+
 /// Collects the tools of a map.
 class ToolsReader {
  public:
-  ToolsReader(const DraftPoints& points, const Map& head, const Context& context)
-      : names_(points), context_(context), joints_(head, context) {}
+  ToolsReader(const DraftPoints& points, const Map& head, Joints& joints, const Context& context)
+      : names_(points), head_(head), joints_(joints), context_(context) {}
 
   void read(const Entry& entry) {
-    if (!check_name(entry)) return;
+    if (!joints_.check_name(tool_kind, entry)) return;
     if (!check_map(entry, fmt::format("the tool '{}' holds its points and times", entry.key),
                    fmt::format("write it as in '{}: {{close: valve, travel: 300ms}}'", entry.key), context_))
       return;
@@ -77,7 +84,7 @@ class ToolsReader {
     const bool has_its_values = context_.problems.errors() == errors;
     check_outputs(reader, entry, tool);
     check_sensors(reader, entry);
-    joints_.check(reader, entry, tool);
+    joints_.check_joint(tool_kind, reader, entry, joint_name(head_, tool));
     if (has_its_values) {
       check_times(reader, tool);
       check_positions(reader, tool, context_);
@@ -98,25 +105,6 @@ class ToolsReader {
     context_.problems.error(at, std::move(what), std::move(remedy));
   }
 
-  bool check_name(const Entry& entry) {
-    const std::string_view name = entry.key;
-    const auto [first, is_new] = first_.emplace(name, entry.key_at);
-    if (!is_relative_ros_name(name) || name.find('/') != std::string_view::npos)
-      error(entry.key_at, fmt::format("{} is not a valid name of a tool", shown(name)),
-            "begin with a letter and use letters, digits and '_'");
-    else if (name == wait_for_action)
-      error(entry.key_at, fmt::format("'{}' is an action of the driver itself", name),
-            "give the tool another name");
-    else if (!is_new)
-      context_.problems.error(
-          entry.key_at,
-          fmt::format("'{}' is already the name of a tool, in line {}", name, first->second.line),
-          "give every tool of the map a name of its own", {{first->second, "the other is here"}});
-    else
-      return true;
-    return false;
-  }
-
   void check_outputs(const Reader& reader, const Entry& entry, const Tool& tool) {
     if (reader.lacks("close") && reader.lacks("open"))
       error(entry.key_at, fmt::format("'{}' has no 'close' and no 'open'", entry.key),
@@ -125,7 +113,7 @@ class ToolsReader {
       const auto why_not = [&](const DraftPoint& draft) {
         return no_output(draft, key, reader, tool.direct);
       };
-      const Entry* output = check_point(reader, key, can_drive, an_output, why_not);
+      const Entry* output = names_.check(reader, key, {can_drive, an_output, why_not}, context_);
       if (output == nullptr) continue;
       const auto [first, is_new] = taken_.emplace(output->text, Taken{tool.name, output->at});
       if (!is_new && first->second.tool != tool.name)
@@ -189,8 +177,9 @@ class ToolsReader {
 
   void check_sensors(const Reader& reader, const Entry& entry) const {
     for (const std::string_view key : sensor_keys)
-      check_point(reader, key, can_sense, a_sensor,
-                  [&](const DraftPoint& draft) { return no_sensor(draft, key); });
+      names_.check(reader, key,
+                   {can_sense, a_sensor, [&](const DraftPoint& draft) { return no_sensor(draft, key); }},
+                   context_);
     check_different(reader, entry.key);
     if (reader.has("empty") && reader.lacks("holds"))
       error(reader.find("empty")->key_at, "'empty' needs 'holds', which says whether there is a part",
@@ -206,20 +195,6 @@ class ToolsReader {
           entry.key_at,
           fmt::format("'{}' has no '{}' sensor and no 'travel'", entry.key, no_closed ? "closed" : "opened"),
           "give one, as in 'travel: 300ms'");
-  }
-
-  /// Returns the key's value if it names a point without a hindrance.
-  template <class Why>
-  const Entry* check_point(const Reader& reader, std::string_view key, bool (*is_meant)(const Point&),
-                           std::string_view expected, const Why& why_not) const {
-    const Entry* value = reader.find(key);
-    if (value == nullptr || value->kind != Entry::Kind::scalar) return nullptr;  // a problem already
-    const DraftPoint* draft = names_.find(value->text, value->at, is_meant, expected, context_);
-    if (draft == nullptr || !draft->placed) return nullptr;
-    auto hindrance = why_not(*draft);
-    if (!hindrance) return value;
-    error(value->at, fmt::format("{} {}", shown(value->text), hindrance->what), std::move(hindrance->remedy));
-    return nullptr;
   }
 
   /// No point is two parts of one tool.
@@ -255,34 +230,19 @@ class ToolsReader {
   }
 
   PointNames names_;
+  const Map& head_;
+  Joints& joints_;
   const Context& context_;
   std::vector<Tool> tools_;
-  std::unordered_map<std::string_view, Position> first_;  ///< tools by name
-  std::unordered_map<std::string_view, Taken> taken_;     ///< outputs by name
-  ToolJoints joints_;
+  std::unordered_map<std::string_view, Taken> taken_;  ///< outputs by name
 };
 
 }  // namespace
 
-std::vector<Tool> read_tools(const Reader& top, const DraftPoints& points, const Map& head,
+std::vector<Tool> read_tools(const Reader& top, const DraftPoints& points, const Map& head, Joints& joints,
                              const Context& context) {
-  const Entry* entry = top.find("tools");
-  constexpr std::string_view example = "'tools: {clamp: {close: valve, travel: 300ms}}'";
-  if (entry == nullptr ||
-      !check_map(*entry, "'tools' holds the tools", fmt::format("write them as in {}", example), context))
-    return {};
-  if (entry->children.empty())
-    context.problems.error(entry->key_at, "'tools' has no tool", fmt::format("add one, as in {}", example));
-  if (entry->children.size() > most_tools) {
-    context.problems.error(
-        entry->key_at,
-        fmt::format("there are {} tools, and a map has at most {}", entry->children.size(), most_tools),
-        "write the others into a second map of the device, with another name");
-    return {};
-  }
-  ToolsReader reader(points, head, context);
-  for (const Entry& tool : entry->children) reader.read(tool);
-  warn_of_tool_names(points, reader.tools(), context);
+  ToolsReader reader(points, head, joints, context);
+  for (const Entry& tool : joints.entries(tool_kind, top)) reader.read(tool);
   return reader.tools();
 }
 

@@ -275,8 +275,8 @@ void read_format(const Reader& reader, const Entry& point, Order order, Format& 
   read_text_order(reader, format, context);
 }
 
-Span<const std::uint16_t> read_value(std::string_view key, const Entry& entry, const Point& point,
-                                     const Context& context) {
+std::vector<std::uint16_t> registers_of(std::string_view key, const Entry& entry, const Point& point,
+                                        const Context& context) {
   const ValueWriter writer(key, point, context);
   const std::size_t step = codec::registers(point.format);
   std::vector<std::uint16_t> registers(point.count * step);
@@ -297,7 +297,13 @@ Span<const std::uint16_t> read_value(std::string_view key, const Entry& entry, c
                            "write " + allowed_text(point));
     return {};
   }
-  return context.map.keep(registers);
+  return registers;
+}
+
+Span<const std::uint16_t> read_value(std::string_view key, const Entry& entry, const Point& point,
+                                     const Context& context) {
+  const std::vector<std::uint16_t> registers = registers_of(key, entry, point, context);
+  return registers.empty() ? Span<const std::uint16_t>() : context.map.keep(registers);
 }
 
 }  // namespace coupler::loader

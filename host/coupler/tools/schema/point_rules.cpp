@@ -309,13 +309,16 @@ Rules rules_of_tls() {
   return rules;
 }
 
+/// `joint:` of a tool or an axis
+Json joint_rule() { return only("joint", {{"pattern", R"(^[^\u0000-\u0020\u007f-\u009f]+$)"}}); }
+
 /// One of `tools:`
 Rules rules_of_a_tool() {
   const Json both_sensors{{"required", {"closed", "opened"}}};
   return {{{"anyOf", {has("close"), has("open")}}},
           {{"anyOf", {has("travel"), both_sensors}}},
           {{"dependencies", {{"empty", {"holds"}}}}},
-          only("joint", {{"pattern", R"(^[^\u0000-\u0020\u007f-\u009f]+$)"}}),
+          joint_rule(),
           when(has("hold", not_true()), {{"required", {"close", "open"}}})};
 }
 
@@ -339,6 +342,8 @@ Rules point_rules(Section section) {
     rules = rules_of_tls();
   } else if (section == Section::tool) {
     rules = rules_of_a_tool();
+  } else if (section == Section::axis) {
+    rules = {joint_rule()};
   } else if (loader::overlap(section, bits)) {
     add_rules_of_bits(section, rules);
   } else if (loader::overlap(section, registers)) {

@@ -38,12 +38,12 @@ Json points_of(Section section) {
                      {"additionalProperties", std::move(point)}});
 }
 
-/// name -> role, or name -> tool, which says more than nothing.
+/// name -> role, or name -> tool or axis, which say more than nothing.
 Json named_of(Section section) {
   Json each = object_of(section);
   if (section == Section::role) each = or_nothing(std::move(each));
   Json all{{"type", "object"}, {"minProperties", 1}, {"additionalProperties", std::move(each)}};
-  if (section == Section::tool)
+  if (loader::overlap(section, Section::tool | Section::axis))
     all["propertyNames"] = {
         {"pattern", part_of_a_ros_name},
         {"patternErrorMessage", "a name begins with a letter and has letters, digits and '_'"},

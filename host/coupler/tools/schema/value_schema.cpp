@@ -199,6 +199,12 @@ Json value_schema(const Key& key) {
                  any_of({text("^[A-Za-z][A-Za-z0-9_]*$", "use letters, digits and '_', a letter first"),
                          {{"type", "boolean"}}})}}},
               {"additionalProperties", false}};
+    case ValueKind::positions:
+      return {{"type", "object"},
+              {"minProperties", 2},
+              {"patternProperties",
+               {{"^(-?[0-9]+|0[xX][0-9A-Fa-f]+|[A-Za-z][A-Za-z0-9_]*)$", {{"type", "number"}}}}},
+              {"additionalProperties", false}};
     case ValueKind::patterns:
       return any_of({{{"enum", {"all", "none"}}}, {{"type", "array"}, {"items", {{"type", "string"}}}}});
     case ValueKind::section:

@@ -50,6 +50,7 @@ static_assert(lists_all<Connection> && lists_all<Serial> && lists_all<Polling> &
               "A member without its key in coupler/map/fields.hpp");
 static_assert(fields<HostOptions> + 1 == members<HostOptions>, "The one more is deadman");
 static_assert(fields<Tool> + 1 == members<Tool>, "The one more is the name");
+static_assert(fields<Axis> + 1 == members<Axis>, "The one more is the name");
 static_assert(fields<Service> + 2 == members<Service>, "The two more are allow and watchdog");
 
 TEST(Fields, The_key_table_has_each_of_their_keys) {
@@ -63,6 +64,7 @@ TEST(Fields, The_key_table_has_each_of_their_keys) {
   EXPECT_THAT(unknown_keys<Watchdog>(Section::watchdog), IsEmpty());
   EXPECT_THAT(unknown_keys<SimWire>(Section::wire), IsEmpty());
   EXPECT_THAT(unknown_keys<Tool>(Section::tool), IsEmpty());
+  EXPECT_THAT(unknown_keys<Axis>(Section::axis), IsEmpty());
   EXPECT_THAT(unknown_keys<JointPositions>(Section::positions), IsEmpty());
   EXPECT_THAT(unknown_keys<HostOptions>(Section::defaults), IsEmpty());
   EXPECT_THAT(unknown_keys<HostOptions>(Section::holding_register), IsEmpty());

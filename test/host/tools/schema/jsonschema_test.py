@@ -28,11 +28,12 @@ VALIDATOR = jsonschema.Draft7Validator(SCHEMA)
 UNSEEN = {name + ".yaml" for name in (
     # between keys
     "tls_with_rtu security_at_the_plain_port serial_and_address unit_of_a_serial_line broadcast_that_is_read broadcast_with_a_watchdog "
-    "broadcast_with_tools tool_times "
+    "broadcast_with_tools broadcast_with_axes tool_times "
     # between points, or between a point and a limit
     "overlap overlap_of_a_word_and_its_bits overlap_of_parts overlap_of_access overlap_of_inputs overlap_of_a_wired_input point_name_is_taken "
     "names_of_later_topics tool_names_of_points tool_outputs tool_output_of_defaults tool_output_of_two tool_sensors tool_joint_of_two tool_positions "
-    "tool_point_is_used_twice tool_outputs_are_both_on "
+    "tool_point_is_used_twice tool_outputs_are_both_on axis_points axis_point_of_two axis_joint_of_two axis_is_not_read axis_names_of_points "
+    "axis_positions_twice axis_positions_not_allowed axis_positions_of_a_measure "
     "line_in_two_points point_exceeds_the_limits unreadable_before_a_write string_is_too_long_to_write preset_area "
     # between roles and what they name
     "security_plain_is_no_role security_role_is_called_none security_of_no_point "
@@ -50,7 +51,7 @@ UNSEEN = {name + ".yaml" for name in (
     # in the lock, or for want of one
     "address_is_missing indented_too_little lock_does_not_know_it lock_of_a_merge lock_is_outgrown "
     # in the text: gone when it is read as YAML
-    "anchor tag tag_of_a_map tag_of_quoted_text key_is_null duplicate_key duplicate_table tool_name_is_taken").split()} | {"json_surrogate_escape.json"}
+    "anchor tag tag_of_a_map tag_of_quoted_text key_is_null duplicate_key duplicate_table tool_name_is_taken axis_name_is_taken").split()} | {"json_surrogate_escape.json"}
 
 # Of test/maps/mistakes.
 UNSEEN_MISTAKES = {
