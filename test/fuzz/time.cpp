@@ -58,8 +58,11 @@ void take_schedules(Bytes pdu) {
   if (const auto request = parse_schedule_request(pdu)) {
     if (const auto* output = std::get_if<ScheduleOutput>(&*request))
       take_schedule(*output, pdu);
+    else if (const auto* one = std::get_if<CancelOutput>(&*request))
+      require_same(pdu.from(1), ScheduleRequest::cancel(*one).pdu().from(1));
     else
-      require_same(pdu.from(1), ScheduleRequest::cancel(std::get<CancelOutput>(*request)).pdu().from(1));
+      require_same(pdu.from(1),
+                   ScheduleRequest::cancel_from(std::get<CancelOutputs>(*request)).pdu().from(1));
   }
   Pdu again{};
   if (const auto reply = parse_schedule_reply(pdu))

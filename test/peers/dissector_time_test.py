@@ -38,6 +38,10 @@ def schedule(table, address, count, values, duration):
     return struct.pack(">BBBIqIBHHB", 66, 1, 1, EPOCH, NOW, duration, table, address, count, len(values)) + values
 
 
+def cancel_from(table, address, count):
+    return struct.pack(">BBBIqBHH", 66, 1, 3, EPOCH, NOW, table, address, count)
+
+
 def scheduled(number):
     return struct.pack(">BBHqq", 66, 1, number, NOW, NOW)
 
@@ -68,6 +72,12 @@ TRAFFIC = [
      ["refused", "speed [exception 06]"]),
     (struct.pack(">BBBIH", 66, 1, 2, EPOCH, 513), scheduled(513),
      ["cancels a scheduled output", STAMPS[0], "Number: 513"], ["cancelled as number 513", "Number: 513", *STAMPS[1:]]),
+    (cancel_from(1, 0, 2), scheduled(12),
+     ["cancels scheduled outputs", STAMPS[0], f"Due: from {TIME}", "Addresses: coils 0, count 2",
+      f"lamp [from {TIME}] (above the door)", f"gate [from {TIME}]"], ["cancelled: 12", *STAMPS[1:]]),
+    (cancel_from(3, 700, 65535), b"\xc2\x02",
+     ["cancels scheduled outputs (no point of the map)", STAMPS[0], f"Due: from {TIME}",
+      "Addresses: holding_registers 700, count 65535"], ["refused [exception 02]"]),
     (wait(0, 304), changes(400, 96),
      ["waits for changes", "Longest wait: 0 ms", STAMPS[0], "Changes seen: 304"],
      ["changes", *STAMPS, "Newest change: 400", "Changes lost: 96"]),
@@ -78,6 +88,8 @@ TRAFFIC = [
     (b"\x41\x02" + wait(0, 0)[2:], b"\xc1\x03", None, None),
     (b"\x42\x00" + schedule(1, 0, 2, b"\x01", 200)[2:], b"\xc2\x03", None, None),
     (schedule(1, 0, 2, b"\x01", 200)[:20], b"\xc2\x03", None, None),
+    (cancel_from(1, 0, 2)[:19], b"\xc2\x03", None, None),
+    (cancel_from(9, 0, 2), b"\xc2\x03", None, None),
     (b"\x42\x01\x09" + schedule(1, 0, 2, b"\x01", 200)[3:], scheduled(7), None, None),
     (wait(0, 0), changes(0, 0)[:20], ["waits for changes", "Longest wait: 0 ms", STAMPS[0], "Changes seen: 0"], None),
 ]

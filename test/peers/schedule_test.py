@@ -87,6 +87,27 @@ def what_cancels(port, checks):
         checks.equal("the end of the connection", [o[:3] for o in other.outcomes(number)], [(CANCELLED, CONNECTION, number)])
 
 
+def a_client_cancels_many(port, checks):
+    with clients(port, 2) as (client, other):
+        soon = time.monotonic_ns() + HOUR // 4
+        kept = [number_of(client.schedule(soon - 1, MOTOR, [1])), number_of(client.schedule(soon, LAMP, [1])),
+                number_of(other.schedule(soon, MOTOR, [1]))]
+        numbers = [number_of(client.schedule(soon + i, (MOTOR, BRAKE)[i % 2], [1])) for i in range(40)]
+        checks.equal("in another epoch", client.cancel_from(soon, MOTOR, 2, epoch=client.epoch ^ 1), NOT_ALLOWED)
+        checks.equal("no coil", client.cancel_from(soon, MOTOR, 0), NOT_ALLOWED)
+        checks.equal("past the last address", client.cancel_from(soon, 2, 65535), NO_ADDRESS)
+        before = time.monotonic_ns()
+        reply = client.cancel_from(soon, MOTOR, 2)
+        checks.equal("how many", number_of(reply), len(numbers))
+        arrived, replied = struct.unpack(">QQ", reply[4:])
+        checks.equal("the times in the reply", before <= arrived <= replied <= time.monotonic_ns(), True)
+        checks.equal("each is told", sorted(o[:3] for o in client.outcomes(*numbers)),
+                     sorted((CANCELLED, BY_CLIENT, number) for number in numbers))
+        checks.equal("none is left", number_of(client.cancel_from(soon, MOTOR, 2)), 0)
+        checks.equal("the others stay", [number_of(each.cancel(number)) for each, number in
+                                         zip((client, client, other), kept)], kept)
+
+
 def what_is_refused(port, checks):
     with clients(port) as client:
         due = time.monotonic_ns() + HOUR // 2
@@ -222,7 +243,7 @@ def without_watchdog(node, served, checks):
     with peer.running_node([node, str(served), "--sim"]) as port:
         for test in (they_are_driven_at_their_times_in_their_order, a_duration_ends_though_its_client_is_gone,
                      a_pulse_ends_by_itself,
-                     what_cancels, what_is_refused, sixty_four_places_for_all_clients,
+                     what_cancels, a_client_cancels_many, what_is_refused, sixty_four_places_for_all_clients,
                      two_clients_schedule_the_same_output, a_reload_cancels_and_durations_go_on,
                      a_killed_worker_process_leaves_nothing_on):
             test(port, checks)

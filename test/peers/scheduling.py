@@ -69,6 +69,10 @@ class Client(Listener):
     def cancel(self, number):
         return self.ask(struct.pack(">BBBIH", 66, 1, 2, self.epoch, number))
 
+    def cancel_from(self, due, coil, count, epoch=None):
+        epoch = self.epoch if epoch is None else epoch
+        return self.ask(struct.pack(">BBBIQBHH", 66, 1, 3, epoch, due, 1, coil, count))
+
     def write(self, coil, bit):
         return self.ask(struct.pack(">BHH", 5, coil, 0xFF00 if bit else 0))
 

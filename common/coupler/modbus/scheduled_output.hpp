@@ -37,11 +37,22 @@ struct CancelOutput {
   std::uint16_t number = 0;  ///< ScheduleReply's
 };
 
-/// Answers both requests.
+/// Cancels all that this connection has scheduled, that overlaps the range and is due then or later, and that
+/// has not begun.
+struct CancelOutputs {
+  std::uint32_t epoch = 0;
+  NodeTime from{};
+  Function table = Function::read_coils;  ///< as ScheduleOutput's
+  Range range = Range::of(0, 1);          ///< at most 65535 addresses
+};
+
+/// Answers every request.
 struct ScheduleReply {
-  std::uint16_t number = 0;  ///< chosen by the node; Change::address says it when all is over
-  NodeTime arrived{};        ///< the request
-  NodeTime replied{};        ///< this reply
+  /// Chosen by the node; Change::address says it when all is over. After CancelOutputs: how many it
+  /// cancelled.
+  std::uint16_t number = 0;
+  NodeTime arrived{};  ///< the request
+  NodeTime replied{};  ///< this reply
 };
 
 // The client's side.
@@ -54,6 +65,7 @@ class ScheduleRequest {
   /// 1 … max_scheduled_registers holding registers.
   static ScheduleRequest registers(const ScheduleOutput& when, Span<const std::uint16_t> values);
   static ScheduleRequest cancel(const CancelOutput& what);
+  static ScheduleRequest cancel_from(const CancelOutputs& what);
 
   Bytes pdu() const { return {bytes_.data(), size_}; }
 
@@ -71,7 +83,8 @@ tl::expected<ScheduleReply, ReplyError> parse_schedule_reply(Bytes pdu);
 
 /// `pdu` has at least one byte. Errors: 03 a length, version, operation, duration, table or quantity that is
 /// not allowed, or a byte count that does not match; 02 a range that runs past address 65535.
-tl::expected<std::variant<ScheduleOutput, CancelOutput>, Exception> parse_schedule_request(Bytes pdu);
+tl::expected<std::variant<ScheduleOutput, CancelOutput, CancelOutputs>, Exception> parse_schedule_request(
+    Bytes pdu);
 
 /// `pdu` holds at least max_pdu_size bytes. Returns the size.
 std::size_t reply_schedule(const ScheduleReply& reply, Span<std::uint8_t> pdu);

@@ -54,8 +54,9 @@ struct ReadWriteRegisters {
 /// FC 8/00: the request comes back as it is (MAP 6.8.1).
 struct Echo {};
 
-using Request = std::variant<Echo, FileGroups, Read, ReadDeviceIdentification, WriteBits, WriteRegisters,
-                             MaskWrite, ReadWriteRegisters, ChangesRequest, ScheduleOutput, CancelOutput>;
+using Request =
+    std::variant<Echo, FileGroups, Read, ReadDeviceIdentification, WriteBits, WriteRegisters, MaskWrite,
+                 ReadWriteRegisters, ChangesRequest, ScheduleOutput, CancelOutput, CancelOutputs>;
 
 /// Reads a request PDU of at least one byte and checks all that can be checked without knowing the device, in
 /// the order of MAP's state diagrams. Errors: 01 a function or sub-function that is not supported, or a code

@@ -25,6 +25,53 @@ TEST_F(ScheduledOutputs, A_client_cancels_its_own_only) {
   EXPECT_THAT(node_.lines.writes(), IsEmpty());
 }
 
+TEST_F(ScheduledOutputs, A_client_cancels_all_of_its_own_at_some_addresses_from_a_time_on) {
+  const auto early = accept(coils(in(milliseconds(5)), 0, {1}));
+  const auto first = accept(coils(in(milliseconds(6)), 0, {0}));
+  const auto second = accept(coils(in(milliseconds(9)), 1, {0, 1}));
+  const auto beside = accept(coils(in(milliseconds(9)), 3, {1}));
+  const auto others = accept(other_, coils(in(milliseconds(9)), 4, {1}));
+  const auto in_registers = accept(registers(in(milliseconds(9)), 0, {7, 7}));
+  const Pdu request = cancel_from(in(milliseconds(6)), Table::coils, modbus::Range::of(0, 2));
+  const auto reply = modbus::parse_schedule_reply(node_.ask(request));
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->number, 2);
+  EXPECT_EQ(reply->arrived, node_time(node_.now));
+  EXPECT_THAT(node_.outcomes.told,
+              ElementsAre(cancelled(Reason::client, first), cancelled(Reason::client, second)));
+  pass(milliseconds(9));
+  EXPECT_THAT(levels(), ElementsAre(1, 0, 0, 1, 1, 0));
+  EXPECT_THAT(values(0, 2), ElementsAre(7, 7));
+  std::vector<int> done;
+  for (const Change& told : node_.outcomes.told)
+    if (told.kind == Change::Kind::done) done.push_back(told.address);
+  EXPECT_THAT(done, ElementsAre(early, beside, others, in_registers));
+}
+
+TEST_F(ScheduledOutputs, A_duration_that_has_begun_is_not_cancelled_with_the_others) {
+  accept(coils(in(milliseconds(5)), 0, {1}, milliseconds(20)));
+  pass(milliseconds(5));
+  const auto waiting = accept(coils(in(milliseconds(30)), 0, {1}));
+  const Pdu all = cancel_from(TimePoint::min(), Table::coils, modbus::Range::of(0, 65535));
+  EXPECT_EQ(accept(all), 1);
+  EXPECT_EQ(node_.outcomes.told.back(), cancelled(Reason::client, waiting));
+  EXPECT_THAT(levels(), ElementsAre(1, 0, 0, 0, 0, 0));
+  pass(milliseconds(20));
+  EXPECT_THAT(levels(), ElementsAre(0, 0, 0, 0, 0, 0)) << "it ends by itself";
+}
+
+TEST_F(ScheduledOutputs, To_cancel_nothing_is_no_error_and_another_epoch_is_an_exception_03) {
+  accept(coils(in(milliseconds(5)), 0, {1}));
+  Pdu request = cancel_from(in(milliseconds(6)), Table::coils, modbus::Range::of(0, 2));
+  const auto reply = modbus::parse_schedule_reply(node_.ask(request));
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->number, 0);
+  request = cancel_from(in(milliseconds(5)), Table::coils, modbus::Range::of(0, 2));
+  request[6] ^= 1;
+  EXPECT_EQ(node_.ask(request), (Pdu{0xC2, 3}));
+  EXPECT_THAT(node_.outcomes.told, IsEmpty());
+}
+
 TEST_F(ScheduledOutputs, A_plain_write_to_one_of_the_addresses_by_anyone_cancels_it) {
   const auto coil = accept(coils(in(milliseconds(5)), 0, {1, 1}));
   const auto other_coil = accept(coils(in(milliseconds(5)), 4, {1}));

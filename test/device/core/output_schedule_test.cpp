@@ -128,6 +128,21 @@ TEST_F(Scheduling, A_client_cancels_its_own_and_only_what_has_not_begun) {
   EXPECT_EQ(schedule_.earliest(), at(10)) << "only the end of the other is left";
 }
 
+TEST_F(Scheduling, A_client_cancels_from_a_time_on_what_is_its_own_overlaps_and_has_not_begun) {
+  const std::uint16_t at_the_time = add(5, Range::of(3, 2))->number;
+  const std::uint16_t before = add(4, Range::of(4, 1))->number;
+  const std::uint16_t others = add(other_, 6, Range::of(4, 1))->number;
+  ScheduledOutput* begun = add(7, Range::of(4, 1));
+  schedule_.begin(*begun, at(10), std::vector<std::uint16_t>{0});
+  EXPECT_EQ(schedule_.cancel_from(at(5), Table::holding_registers, Range::of(4, 9), client_, at(1)), 0U);
+  EXPECT_EQ(schedule_.cancel_from(at(5), Table::coils, Range::of(5, 9), client_, at(1)), 0U);
+  EXPECT_EQ(schedule_.cancel_from(at(6), Table::coils, Range::of(4, 9), client_, at(1)), 0U);
+  EXPECT_THAT(outcomes_.told, IsEmpty());
+  EXPECT_EQ(schedule_.cancel_from(at(5), Table::coils, Range::of(4, 9), client_, at(1)), 1U);
+  EXPECT_THAT(outcomes_.told, ElementsAre(cancelled(Reason::client, at_the_time, at(1))));
+  EXPECT_THAT(take_due(9), ElementsAre(before, others));
+}
+
 TEST_F(Scheduling, The_end_of_a_connection_cancels_what_it_scheduled) {
   const std::uint16_t own = add(client_, 5)->number;
   const std::uint16_t others = add(other_, 6)->number;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "coupler/device/core/timed_output_end.hpp"
+#include "coupler/map/functions.hpp"
 #include "test/device/core/node_under_test.hpp"
 
 namespace coupler::device {
@@ -73,6 +74,11 @@ class ScheduledOutputs : public testing::Test {
   }
   Pdu cancel(std::uint16_t number) const {
     const auto bytes = modbus::ScheduleRequest::cancel({epoch, number});
+    return Pdu(bytes.pdu().begin(), bytes.pdu().end());
+  }
+  Pdu cancel_from(TimePoint from, Table table, modbus::Range range) const {
+    const auto bytes =
+        modbus::ScheduleRequest::cancel_from({epoch, node_time(from), read_function(table), range});
     return Pdu(bytes.pdu().begin(), bytes.pdu().end());
   }
   /// The number that it is given; 0: it is refused.

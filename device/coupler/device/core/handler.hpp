@@ -113,6 +113,7 @@ class Handler {
   Answer carry_out(const modbus::ChangesRequest& request, const Call& call);
   Answer carry_out(const modbus::ScheduleOutput& wanted, const Call& call);
   Answer carry_out(const modbus::CancelOutput& wanted, const Call& call);
+  Answer carry_out(const modbus::CancelOutputs& wanted, const Call& call);
 
   Answer hardware_failed();
   void drive_due(TimePoint now);

@@ -4,6 +4,7 @@
 
 #include "coupler/device/core/handler.hpp"
 #include "coupler/device/core/timed_output_end.hpp"
+#include "coupler/map/functions.hpp"
 
 namespace coupler::device {
 namespace {
@@ -13,6 +14,10 @@ using modbus::Reason;
 
 constexpr std::chrono::milliseconds most_past{1};
 constexpr std::chrono::hours most_ahead{1};
+
+TimePoint time_point(modbus::NodeTime time) {
+  return TimePoint(std::chrono::duration_cast<TimePoint::duration>(time));
+}
 
 }  // namespace
 
@@ -48,11 +53,10 @@ Handler::Answer Handler::carry_out(const modbus::ScheduleOutput& wanted, const C
   if (wanted.epoch != changes_.ring().epoch() || wanted.due < now - most_past ||
       wanted.due > now + most_ahead)
     return tl::unexpected(Exception::illegal_data_value);
-  const Table table = wanted.table == modbus::Function::read_coils ? Table::coils : Table::holding_registers;
+  const Table table = table_of(wanted.table);
   if (const auto checked = check(wanted, table, call.session); !checked)
     return tl::unexpected(checked.error());
-  const TimePoint due(std::chrono::duration_cast<TimePoint::duration>(wanted.due));
-  const ScheduledOutput* accepted = schedule_.add(wanted, table, due, call.session);
+  const ScheduledOutput* accepted = schedule_.add(wanted, table, time_point(wanted.due), call.session);
   if (accepted == nullptr) return tl::unexpected(Exception::server_device_busy);
   if (wrote_output_) watchdog_.arm(call.now);
   return reply_schedule(accepted->number, call);
@@ -63,6 +67,13 @@ Handler::Answer Handler::carry_out(const modbus::CancelOutput& wanted, const Cal
   if (!schedule_.cancel(wanted.number, call.session, later(call.now)))
     return tl::unexpected(Exception::illegal_data_address);
   return reply_schedule(wanted.number, call);
+}
+
+Handler::Answer Handler::carry_out(const modbus::CancelOutputs& wanted, const Call& call) {
+  if (wanted.epoch != changes_.ring().epoch()) return tl::unexpected(Exception::illegal_data_value);
+  const std::size_t cancelled = schedule_.cancel_from(time_point(wanted.from), table_of(wanted.table),
+                                                      wanted.range, call.session, later(call.now));
+  return reply_schedule(static_cast<std::uint16_t>(cancelled), call);
 }
 
 Handler::Answer Handler::reply_schedule(std::uint16_t number, const Call& call) const {

@@ -197,6 +197,15 @@ bool OutputSchedule::cancel(std::uint16_t number, const ClientSession& owner, Ti
   return waiting_ != before;
 }
 
+std::size_t OutputSchedule::cancel_from(TimePoint from, Table table, Range range, const ClientSession& owner,
+                                        TimePoint at) {
+  const std::size_t before = waiting_;
+  cancel_if(Reason::client, at, [&](const ScheduledOutput& one) {
+    return one.owner == &owner && one.at >= from && one.table == table && one.range.overlaps(range);
+  });
+  return before - waiting_;
+}
+
 void OutputSchedule::cancel_of(const ClientSession& owner, TimePoint at) {
   cancel_if(Reason::connection, at, [&](const ScheduledOutput& one) { return one.owner == &owner; });
 }

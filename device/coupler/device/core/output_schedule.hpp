@@ -98,6 +98,9 @@ class OutputSchedule {
   // Each of these cancels what has not begun. `at` is when.
   /// False: the client has no such one.
   bool cancel(std::uint16_t number, const ClientSession& owner, TimePoint at);
+  /// Those of the client that overlap the range and are due at `from` or later. Returns how many there were.
+  std::size_t cancel_from(TimePoint from, Table table, modbus::Range range, const ClientSession& owner,
+                          TimePoint at);
   void cancel_of(const ClientSession& owner, TimePoint at);
   void cancel_overlapping(Table table, modbus::Range written, TimePoint at);
   void cancel_all(modbus::Reason reason, TimePoint at);

@@ -25,6 +25,12 @@ local function time_request_of(tvb)
   if code ~= schedule_code then return { code = code } end
   local action = tvb(9, 1):uint()
   if action == 2 then return { code = code, show = "cancels a scheduled output" } end
+  if action == 3 then
+    local name = size >= 27 and time_tables[tvb(22, 1):uint()]
+    if not name then return { code = code } end
+    return { code = code, show = "cancels scheduled outputs",
+             cancels = { table = name, start = tvb(23, 2):uint(), count = tvb(25, 2):uint() } }
+  end
   if action ~= 1 then return { code = code } end
   local name = size > 32 and time_tables[tvb(26, 1):uint()]
   if not name then return { code = code } end
@@ -38,6 +44,15 @@ end
 
 local function show_number(item, tvb, at) item:add(fields.number, tvb(at, 2)) end
 
+local function show_cancelled_range(report, tvb, request)
+  local range, from = request.cancels, "from " .. node_time(tvb, 14)
+  report.item:add(tvb(14, 8), "Due: " .. from)
+  report.item:add(tvb(22, 5), string.format("Addresses: %s %d, count %d", range.table, range.start, range.count))
+  report:range("write", range, nil, from)
+  if #report.names == 0 then report.pinfo.cols.info:append(" | " .. request.show) end
+  report:close()
+end
+
 local function show_time_request(tvb, pinfo, tree, request)
   local report = new_report(tvb, pinfo, tree, request.show)
   if request.code == wait_code then
@@ -48,6 +63,7 @@ local function show_time_request(tvb, pinfo, tree, request)
     return report:close()
   end
   show_epoch(report, tvb, 10)
+  if request.cancels then return show_cancelled_range(report, tvb, request) end
   if not request.write then
     show_number(report.item, tvb, 14)
     report:name(request.show .. ": " .. tvb(14, 2):uint())
@@ -120,10 +136,10 @@ local function show_time_reply(tvb, pinfo, tree, request)
     if #report.names == 0 and tvb(41, 1):uint() == 0 then report:name("no changes") end
     report:close()
   elseif code == schedule_code and tvb:len() >= 27 then
-    local what = request.write and "scheduled" or "cancelled"
-    local text = what .. " as number " .. tvb(9, 2):uint()
+    local what, number = request.write and "scheduled" or "cancelled", tvb(9, 2):uint()
+    local text = request.cancels and what .. ": " .. number or what .. " as number " .. number
     local report = new_report(tvb, pinfo, tree, text)
-    show_number(report.item, tvb, 9)
+    if not request.cancels then show_number(report.item, tvb, 9) end
     report.item:add(tvb(11, 8), "Request arrived: " .. node_time(tvb, 11))
     report.item:add(tvb(19, 8), "Replied: " .. node_time(tvb, 19))
     report:name(text)
