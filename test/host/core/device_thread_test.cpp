@@ -163,6 +163,25 @@ TEST(DeviceThread, A_call_is_answered_though_the_sink_throws_meanwhile) {
   }
 }
 
+TEST(DeviceThread, All_writes_of_a_point_are_cancelled_with_one_call) {
+  const auto owned = MapBuilder().command("a", 1).build();
+  FakeDevice device;
+  Link link(test::share(device), {}, {});
+  WaitingSink sink(owned->map());
+  DeviceThread thread(owned->map(), Verify::off, no_map, link, sink.values, sink);
+  thread.start();
+  ScheduledWrite what;
+  do  // until it is connected
+    what.due = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (thread.schedule(what).get().number == 0);
+  std::promise<CallAnswer> answer;
+  auto cancelled = answer.get_future();
+  thread.cancel_all({{0}, what.due}, [&answer](const CallAnswer& given) { answer.set_value(given); });
+  ASSERT_EQ(cancelled.wait_for(std::chrono::seconds(20)), std::future_status::ready);
+  EXPECT_TRUE(cancelled.get().success);
+  EXPECT_EQ(sink.outcome.get_future().get().result, ScheduledOutcome::Result::cancelled);
+}
+
 /// Counts its results, and makes the write once more for each of the first two.
 struct AgainAndAgain : WriteListener {
   explicit AgainAndAgain(DeviceThread& of) : thread(of) {}

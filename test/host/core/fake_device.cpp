@@ -28,6 +28,9 @@ std::string describe(modbus::Bytes pdu) {
     return fmt::format("read file {} {}+{}", (*groups)[0].file, (*groups)[0].record, (*groups)[0].registers);
   if (const auto* cancel = std::get_if<modbus::CancelOutput>(&*request))
     return fmt::format("cancel {}", cancel->number);
+  if (const auto* cancel = std::get_if<modbus::CancelOutputs>(&*request))
+    return fmt::format("cancel {} {}+{}", to_string(table_of(cancel->table)), cancel->range.start(),
+                       cancel->range.count());
   const bool is_single = pdu.size() == 5;
   if (const auto* bits = std::get_if<modbus::WriteBits>(&*request))
     return is_single ? fmt::format("write coil {}", bits->range.start())
@@ -79,6 +82,7 @@ void FakeDevice::change(Table table, std::uint16_t address, bool value) {
 }
 
 void FakeDevice::decide(std::uint16_t number, modbus::Change::Kind kind, modbus::Reason reason) {
+  decided.insert(number);
   changes.push_back(
       {static_cast<std::uint8_t>(reason), kind, number, now().time_since_epoch() + clock_is_ahead});
 }
@@ -206,6 +210,8 @@ Result<std::size_t> FakeDevice::carry_out(modbus::Bytes pdu) {
   if (const auto* groups = std::get_if<modbus::FileGroups>(&*request)) return read_file(*groups);
   if (const auto* cancel = std::get_if<modbus::CancelOutput>(&*request))
     return reply_schedule(cancel->number);
+  if (const auto* cancel = std::get_if<modbus::CancelOutputs>(&*request))
+    return reply_schedule(this->cancel(*cancel));
   if (const auto* output = std::get_if<modbus::ScheduleOutput>(&*request)) {
     scheduled.push_back(*output);
     const modbus::Bytes packed = std::exchange(scheduled.back().values, {});
@@ -252,7 +258,21 @@ Result<std::size_t> FakeDevice::read_file(const modbus::FileGroups& groups) {
 }
 
 std::size_t FakeDevice::reply_schedule(std::uint16_t number) {
-  return modbus::reply_schedule({number, {}, {}}, reply_);
+  const modbus::NodeTime at = now().time_since_epoch() + clock_is_ahead;
+  return modbus::reply_schedule({number, at, at}, reply_);
+}
+
+std::uint16_t FakeDevice::cancel(const modbus::CancelOutputs& which) {
+  cancels.push_back(which);
+  const modbus::NodeTime at = now().time_since_epoch() + clock_is_ahead;
+  std::uint16_t count = 0;
+  for (std::size_t i = 0; i < scheduled.size(); ++i) {
+    const modbus::ScheduleOutput& one = scheduled[i];
+    if (one.due < which.from || one.due <= at || one.table != which.table || !one.range.overlaps(which.range))
+      continue;
+    if (decided.insert(static_cast<std::uint16_t>(i + 1)).second) ++count;
+  }
+  return count;
 }
 
 Result<> FakeDevice::write(Table table, modbus::Range range,

@@ -50,6 +50,8 @@ class FakeDevice : public Channel {
   std::function<void()> during_wait;              ///< what happens when a wait is sent
   std::vector<modbus::ScheduleOutput> scheduled;  ///< number i + 1; without the values
   std::vector<std::uint8_t> scheduled_values;     ///< of the last one
+  std::set<std::uint16_t> decided;                ///< the numbers of those that are over
+  std::vector<modbus::CancelOutputs> cancels;     ///< that were carried out
   std::function<Time()> now = [] { return std::chrono::steady_clock::now(); };
 
   FakeDevice();
@@ -101,6 +103,8 @@ class FakeDevice : public Channel {
   Result<> write(Table table, modbus::Range range,
                  const std::function<std::uint16_t(std::uint32_t i)>& value);
   std::size_t reply_schedule(std::uint16_t number);
+  /// Returns how many it cancels. It has begun those whose time has come.
+  std::uint16_t cancel(const modbus::CancelOutputs& which);
   void answer_wait();
   std::uint8_t byte(std::size_t at) const {
     return at < file.size() ? static_cast<std::uint8_t>(file[at]) : 0;

@@ -106,6 +106,8 @@ TEST_F(NodeOutputsTest, A_node_that_cannot_after_all_has_it_done_by_the_driver) 
   };
   EXPECT_EQ(schedule("lamp", 1, milliseconds(100)).text, "accepted: the driver does it");
   EXPECT_EQ(schedule("lamp", 0, milliseconds(300)).text, "accepted: the driver does it");
+  EXPECT_EQ(device.count("schedule"), 1U) << "both are of one point";
+  EXPECT_EQ(schedule("horn", 0, milliseconds(300)).text, "accepted: the driver does it");
   EXPECT_EQ(device.count("schedule"), 2U) << "the refusal may be about one output";
   run_for(milliseconds(110));
   EXPECT_EQ(lamp(), 1);
@@ -281,19 +283,6 @@ TEST_F(NodeOutputsTest, What_the_node_drove_before_safe_values_is_not_restored) 
   device.next_errors = {TransportFailure{"it has gone"}};
   run_for(seconds(3));
   EXPECT_EQ(lamp(), 0);
-}
-
-TEST_F(NodeOutputsTest, At_the_end_of_the_driver_it_is_cancelled_at_the_node) {
-  begin_node(press());
-  schedule("lamp", 1, seconds(100));
-  schedule("speed", 1, milliseconds(20));
-  device.refuses = [](const std::string& request) {
-    return request == "cancel 2" ? std::optional(modbus::Exception::illegal_data_address) : std::nullopt;
-  };
-  engine->stop();
-  ASSERT_EQ(sink->outcomes.size(), 2U);
-  EXPECT_EQ(sink->outcomes[0].result, Became::cancelled);
-  EXPECT_EQ(sink->outcomes[1].result, Became::unknown) << "it has begun";
 }
 
 }  // namespace

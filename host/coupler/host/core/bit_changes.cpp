@@ -204,7 +204,7 @@ void BitChanges::on_end() {
 
 Time BitChanges::answer_wanted() {
   Time wanted = Time::max();
-  if (!map_.tools.empty())  // the stamps of joint positions are the times of answers
+  if (!map_.tools.empty() || !map_.axes.empty())  // the stamps of joint positions are the times of answers
     wanted = heard_ + std::max<Duration>(period_of(map_.joint_rate), shortest_joint_period);
   for (Told& told : points_)
     if (repeats(told)) wanted = std::min(wanted, repeat_at(told));

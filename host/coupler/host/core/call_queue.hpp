@@ -5,7 +5,9 @@
 #include <atomic>
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <future>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -13,6 +15,20 @@
 #include <variant>
 
 namespace coupler::host {
+
+/// Gives a call its answer, once.
+template <class Answer>
+class Reply {
+ public:
+  using Give = std::function<void(const Answer&)>;
+  explicit Reply(Give give) : give_(std::move(give)) {}
+
+  void set_value(const Answer& answer) { std::exchange(give_, nullptr)(answer); }
+  bool is_given() const { return give_ == nullptr; }
+
+ private:
+  Give give_;
+};
 
 /// Calls that any thread makes and the connection's owner carries out. `What` says what is asked for.
 /// `Answer{{}, why}` refuses a call.
@@ -22,21 +38,26 @@ class CallQueue {
   using Answer = TheAnswer;
   struct Call {
     What what;
-    std::promise<Answer> answer;
+    Reply<Answer> answer;
   };
 
-  /// Makes a call. It is answered at once if there is no connection.
-  std::future<Answer> ask(const What& what = {}) {
+  /// Makes a call. It is answered at once if there is no connection. `give` is called exactly once, perhaps
+  /// before ask() returns; it must not call the queue, nor wait for anything.
+  void ask(const What& what, typename Reply<Answer>::Give give) {
     const std::lock_guard lock(mutex_);
-    Call call{what, {}};
-    auto answer = call.answer.get_future();
+    Call call{what, Reply<Answer>(std::move(give))};
     if (closed_.empty()) {
       waiting_.push_back(std::move(call));
       any_ = true;
     } else {
       call.answer.set_value({{}, closed_});
     }
-    return answer;
+  }
+  /// The same with a future.
+  std::future<Answer> ask(const What& what = {}) {
+    const auto promise = std::make_shared<std::promise<Answer>>();
+    ask(what, [promise](const Answer& answer) { promise->set_value(answer); });
+    return promise->get_future();
   }
   bool any() const { return any_; }
   /// Returns whether a call waits for which `which(what)` is true.

@@ -45,8 +45,8 @@ struct Purpose {
 /// back. Reads are made while one is outstanding only: its answer says which changes are older than they.
 ///
 /// push(), refuse(), report_held_back(), reset_watchdog(), make_safe(), schedule(), cancel_scheduled(),
-/// scheduled(), has_to_end(), answers(), end_comes(), statistics() and revision() may be called from any
-/// thread. All other functions are for the thread that owns the connection. Another thread may call
+/// cancel_all(), scheduled(), has_to_end(), answers(), end_comes(), statistics() and revision() may be called
+/// from any thread. All other functions are for the thread that owns the connection. Another thread may call
 /// send_now() if it has made sure that the owner is only waiting.
 class Device {
  public:
@@ -73,7 +73,14 @@ class Device {
   std::future<CallAnswer> make_safe() { return writer_.ask_safe(); }
   /// See OutputScheduler::ask().
   std::future<ScheduleAnswer> schedule(const ScheduledWrite& what) { return scheduler_.ask(what); }
+  void schedule(const ScheduledWrite& what, Reply<ScheduleAnswer>::Give give) {
+    scheduler_.ask(what, std::move(give));
+  }
   std::future<CallAnswer> cancel_scheduled(std::uint32_t number) { return scheduler_.cancel(number); }
+  /// See OutputScheduler::cancel_all().
+  void cancel_all(WritesFrom which, Reply<CallAnswer>::Give give) {
+    scheduler_.cancel_all(std::move(which), std::move(give));
+  }
   std::vector<WaitingWrite> scheduled() const { return scheduler_.waiting(); }
   /// Returns whether stop() has to send requests because of scheduled outputs.
   bool has_to_end() const { return scheduler_.is_busy(); }

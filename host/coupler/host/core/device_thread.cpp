@@ -92,10 +92,20 @@ std::future<ScheduleAnswer> DeviceThread::schedule(const ScheduledWrite& what) {
   return answer;
 }
 
+void DeviceThread::schedule(const ScheduledWrite& what, Reply<ScheduleAnswer>::Give give) {
+  device_.schedule(what, std::move(give));
+  link_.wake();
+}
+
 std::future<CallAnswer> DeviceThread::cancel_scheduled(std::uint32_t number) {
   auto answer = device_.cancel_scheduled(number);
   link_.wake();
   return answer;
+}
+
+void DeviceThread::cancel_all(WritesFrom which, Reply<CallAnswer>::Give give) {
+  device_.cancel_all(std::move(which), std::move(give));
+  link_.wake();
 }
 
 /// An exception, for lack of memory for what the device sends, for example, costs this device its connection,

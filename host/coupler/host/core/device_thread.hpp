@@ -91,9 +91,15 @@ class DeviceThread {
   /// The answer comes a timeout after the end of the writes and requests before it, at the latest, or at once
   /// if there is no connection. The outcome goes to the sink.
   std::future<ScheduleAnswer> schedule(const ScheduledWrite& what);
+  /// The same; `give` gets the answer, perhaps before this returns and before the outcome or after it. It
+  /// must not wait for anything.
+  void schedule(const ScheduledWrite& what, Reply<ScheduleAnswer>::Give give);
   /// Cancels a write that schedule() has accepted and that has not begun. The answer comes as that of
   /// schedule() does.
   std::future<CallAnswer> cancel_scheduled(std::uint32_t number);
+  /// Cancels all these writes at one stroke: see OutputScheduler. `give` gets the answer as that of
+  /// schedule() does.
+  void cancel_all(WritesFrom which, Reply<CallAnswer>::Give give);
   /// Returns the writes that schedule() has accepted and that have no outcome yet.
   std::vector<WaitingWrite> scheduled() const { return device_.scheduled(); }
   DeviceSnapshot statistics() const { return device_.statistics(); }

@@ -56,11 +56,9 @@ std::optional<std::uint16_t> NodeOutputs::number_at_node(std::uint32_t number) c
   return std::nullopt;
 }
 
-std::vector<std::uint16_t> NodeOutputs::numbers() const {
-  std::vector<std::uint16_t> numbers;
-  numbers.reserve(waiting_.size());
-  for (const Waiting& one : waiting_) numbers.push_back(one.number);
-  return numbers;
+bool NodeOutputs::has(std::uint16_t number) const {
+  return std::any_of(waiting_.begin(), waiting_.end(),
+                     [number](const Waiting& one) { return one.number == number; });
 }
 
 /// Each is taken before it is told: who is told may throw, and the next call goes on behind it.

@@ -19,6 +19,13 @@ inline constexpr const char* told_no_more = "the device no longer reports change
 /// on.
 class NodeOutputs : public ChangeSink {
  public:
+  struct Waiting {
+    std::uint16_t number;
+    modbus::NodeTime node_due;
+    AcceptedWrite what;
+    Time told_by;  ///< an outcome that was not told by then was among the changes that were lost
+  };
+
   /// `bits` receives the changes of bits. Both must outlive the object.
   NodeOutputs(ChangeSink& bits, Clock& clock, ScheduledListener& outcomes)
       : bits_(bits), clock_(clock), outcomes_(outcomes) {}
@@ -32,8 +39,10 @@ class NodeOutputs : public ChangeSink {
   std::size_t size() const { return waiting_.size(); }
   /// The node's number of the write with that number of ours; nullopt if it does not wait.
   std::optional<std::uint16_t> number_at_node(std::uint32_t number) const;
-  /// The numbers of those that wait.
-  std::vector<std::uint16_t> numbers() const;
+  /// Those that wait, in the order in which they were accepted.
+  const std::vector<Waiting>& waiting() const { return waiting_; }
+  /// Returns whether the output with that number of the node's waits.
+  bool has(std::uint16_t number) const;
   /// Reports the outcome of an output if it still waits.
   void settle(std::uint16_t number, ScheduledOutcome::Result result, const std::string& reason);
   /// Notes that a write of its own to the point was carried out.
@@ -49,12 +58,6 @@ class NodeOutputs : public ChangeSink {
   Time answer_wanted() override { return bits_.answer_wanted(); }
 
  private:
-  struct Waiting {
-    std::uint16_t number;
-    modbus::NodeTime node_due;
-    AcceptedWrite what;
-    Time told_by;  ///< an outcome that was not told by then was among the changes that were lost
-  };
   template <class Which>
   void settle_if(Which which, ScheduledOutcome::Result result, Stamp at, const std::string& reason);
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <exception>
-#include <string_view>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,8 +19,8 @@ namespace {
 using modbus::Exception;
 
 constexpr auto the_driver_ends = "the driver ends";
-constexpr std::string_view in_doubt = "it may or may not be carried out: ";
 constexpr auto made_safe = "safe values have been written meanwhile; ask again if it is still wanted";
+constexpr auto cancelled_first = "cancelled before it was accepted";
 
 std::string refusal(modbus::Exception code) {
   std::string what = to_string(Error(ExceptionReply{code}));
@@ -43,17 +43,12 @@ std::string refusal(modbus::Exception code) {
 
 /// Makes an answer for a call, which has one then whatever throws.
 template <class Answer, class F>
-Result<> answered(std::promise<Answer>& to, F make) {
+Result<> answered(Reply<Answer>& to, F make) {
   try {
     return make();
   } catch (...) {
     const std::exception_ptr thrown = std::current_exception();
-    const Answer unknown{{}, std::string(in_doubt) + what_failed(thrown)};
-    try {
-      to.set_value(unknown);
-    } catch (const std::future_error&) {
-      std::rethrow_exception(thrown);  // it has an answer
-    }
+    if (!to.is_given()) to.set_value({{}, std::string(in_doubt) + what_failed(thrown)});
     throw;
   }
 }
@@ -67,14 +62,17 @@ OutputScheduler::OutputScheduler(const Map& map, Link& link, Writer& writer, Cha
       writer_(writer),
       sink_(sink),
       by_driver_(link, writer, *this),
-      by_node_(bits, clock_, *this) {
+      by_node_(bits, clock_, *this),
+      canceller_(map, link, by_driver_, by_node_) {
   writer.listen(*this);
 }
 
 void OutputScheduler::connected(bool by_node) {
   node_can_ = by_node;
+  canceller_.connected();
   calls_.open();
   cancels_.open();
+  point_cancels_.open();
 }
 
 std::vector<WaitingWrite> OutputScheduler::waiting() const {
@@ -95,20 +93,32 @@ std::uint32_t OutputScheduler::accept(const ScheduledWrite& what, bool by_device
 }
 
 Result<> OutputScheduler::step(const ChangeListener& listener) {
-  if (auto call = cancels_.take_one_of([](std::uint32_t) { return true; })) {
-    Result<> done = answered(call->answer, [&] { return answer_cancel(call->what, call->answer, listener); });
-    note();
-    return done;
-  }
-  auto call = calls_.take_one_of([this](const AskedSchedule& asked) { return is_next(asked); });
+  const auto any = [](const auto&) { return true; };
+  const auto is_next_call = [this](const AskedSchedule& asked) { return is_next(asked); };
   Result<> done;
-  if (call) done = answered(call->answer, [&] { return answer(call->what.what, call->answer, listener); });
+  if (auto one = cancels_.take_one_of(any)) {
+    done = answered(one->answer, [&] { return canceller_.answer(one->what, one->answer, listener); });
+  } else if (auto some = point_cancels_.take_one_of(any)) {
+    done = answered(some->answer, [&] {
+      refuse_waiting(some->what);
+      return canceller_.answer(some->what.which, some->answer, listener);
+    });
+  } else if (auto call = calls_.take_one_of(is_next_call)) {
+    done = answered(call->answer, [&] { return answer(call->what.what, call->answer, listener); });
+  }
   note();
   return done;
 }
 
+void OutputScheduler::refuse_waiting(const AskedCancel& cancelled) {
+  const auto is_of_them = [&cancelled](const AskedSchedule& asked) {
+    return asked.order <= cancelled.after && cancelled.which.has(asked.what);
+  };
+  while (auto call = calls_.take_one_of(is_of_them)) call->answer.set_value({0, cancelled_first});
+}
+
 std::string OutputScheduler::why_refused(const ScheduledWrite& what, Time now) const {
-  if (by_node_.size() + by_driver_.size() >= max_scheduled)
+  if (is_full())
     return fmt::format("{} scheduled writes wait, and more cannot; ask again when one of them is over",
                        max_scheduled);
   if (const auto forbidden = find_forbidden(point(what), what.write.registers.data()))
@@ -116,10 +126,10 @@ std::string OutputScheduler::why_refused(const ScheduledWrite& what, Time now) c
   return why_impossible(what, now);
 }
 
-Result<> OutputScheduler::answer(const ScheduledWrite& what, std::promise<ScheduleAnswer>& to,
+Result<> OutputScheduler::answer(const ScheduledWrite& what, Reply<ScheduleAnswer>& to,
                                  const ChangeListener& listener) {
   if (const std::string why = why_refused(what, clock_.now()); !why.empty()) {
-    to.set_value({0, why});
+    to.set_value({0, why, false, is_full()});
     return {};
   }
   if (can_node(what, listener)) {
@@ -137,11 +147,13 @@ Result<> OutputScheduler::answer(const ScheduledWrite& what, std::promise<Schedu
   return {};
 }
 
-/// Parts of a register are for the driver: a request has whole ones.
+/// Parts of a register are for the driver: a request has whole ones. So is what is late already, and what
+/// follows it: a write that the driver makes cancels those to the same point that wait at the node.
 bool OutputScheduler::can_node(const ScheduledWrite& what, const ChangeListener& listener) const {
   const bool bits = holds_bits(point(what).table);
-  return node_can_ && !is_partial(point(what)) && listener.epoch() &&
-         listener.mapping().node_time(what.due) &&
+  const bool is_late = what.may_be_late > Duration::zero() && what.due <= clock_.now();
+  return node_can_ && !is_late && !by_driver_.has_point(what.write.point) && !is_partial(point(what)) &&
+         listener.epoch() && listener.mapping().node_time(what.due) &&
          range(point(what)).count() <= (bits ? modbus::max_scheduled_bits : modbus::max_scheduled_registers);
 }
 
@@ -169,14 +181,20 @@ Result<std::optional<ScheduleAnswer>> OutputScheduler::give_to_node(const Schedu
     by_node_.add(reply->number, due, {number, what});
     // The answer to the wait has come before that to this request, and was the last one.
     if (!listener.is_active()) by_node_.lose(told_no_more);
-    return std::optional(ScheduleAnswer{number, "accepted: the device does it"});
+    return std::optional(ScheduleAnswer{number, "accepted: the device does it", true});
   }
   const ExceptionReply* exception = exception_in(reply.error());
   if (exception == nullptr || is_unit_away(reply.error())) return tl::make_unexpected(reply.error());
   // A gateway before it does not know the function; or it is this output that this client may not write,
   // which a write will tell. Nothing is between the two ends of TLS.
   if (exception->code == Exception::illegal_function && !map_.connection.tls.present()) return std::nullopt;
-  return ScheduleAnswer{0, "the device refuses it with " + refusal(exception->code)};
+  // Its time has passed on the way.
+  if (const Time now = clock_.now(); exception->code == Exception::illegal_data_value &&
+                                     what.may_be_late > Duration::zero() && what.due <= now &&
+                                     now <= what.due + what.may_be_late)
+    return std::nullopt;
+  return ScheduleAnswer{0, "the device refuses it with " + refusal(exception->code), false,
+                        exception->code == Exception::server_device_busy};
 }
 
 ScheduleAnswer OutputScheduler::keep(const ScheduledWrite& what) {
@@ -190,42 +208,11 @@ ScheduleAnswer OutputScheduler::keep(const ScheduledWrite& what) {
   return {number, "accepted: the driver does it"};
 }
 
-Result<> OutputScheduler::answer_cancel(std::uint32_t number, std::promise<CallAnswer>& to,
-                                        const ChangeListener& listener) {
-  const std::string reason = to_string(modbus::Reason::client);
-  if (by_driver_.cancel(number, reason)) {
-    to.set_value({true, "cancelled"});
-    return {};
-  }
-  const auto at_node = by_node_.number_at_node(number);
-  if (!at_node) {
-    to.set_value(
-        by_driver_.has(number)
-            ? CallAnswer{false, "too late: it is being written"}
-            : CallAnswer{false, fmt::format("no write {} waits: it was carried out, or there was none; "
-                                            "list_scheduled names those that wait",
-                                            number)});
-    return {};
-  }
-  Result<> cancelled = cancel_at_node(*at_node, reason, listener);
-  if (cancelled) {
-    to.set_value({true, "cancelled"});
-    return {};
-  }
-  if (exception_in(cancelled.error()) == nullptr || is_unit_away(cancelled.error())) {
-    to.set_value({false, std::string(in_doubt) + to_string(cancelled.error())});
-    return cancelled;
-  }
-  to.set_value(
-      {false,
-       "too late: it has begun, or the device has ended it; its outcome comes on the topic scheduled"});
-  return {};
-}
-
 void OutputScheduler::disconnected(const std::string& why) {
   const std::string closed = fmt::format("not connected: {}; ask again when the device is back", why);
   calls_.close(closed);
   cancels_.close(closed);
+  point_cancels_.close(closed);
   if (!busy_) return;
   by_driver_.cancel(to_string(modbus::Reason::connection));
   by_node_.lose("the connection ended before the outcome was reported");
@@ -235,21 +222,13 @@ void OutputScheduler::disconnected(const std::string& why) {
 void OutputScheduler::shut_down(bool connected, const ChangeListener& listener) {
   calls_.close(the_driver_ends);
   cancels_.close(the_driver_ends);
+  point_cancels_.close(the_driver_ends);
   if (!busy_) return;
-  by_driver_.cancel(the_driver_ends);
-  for (const std::uint16_t number : connected ? by_node_.numbers() : std::vector<std::uint16_t>{}) {
-    const Result<> done = cancel_at_node(number, the_driver_ends, listener);
-    if (!done && exception_in(done.error()) == nullptr) break;
-  }
+  WritesFrom all{std::vector<std::uint32_t>(map_.points.size()), Time::min()};
+  std::iota(all.points.begin(), all.points.end(), 0U);
+  auto counts = canceller_.cancel_by_driver(all, the_driver_ends);
+  if (connected) (void)canceller_.cancel_at_node(all, the_driver_ends, listener, counts);
   by_node_.lose(the_driver_ends);
-}
-
-Result<> OutputScheduler::cancel_at_node(std::uint16_t number, const std::string& reason,
-                                         const ChangeListener& listener) {
-  const auto reply = link_.schedule(modbus::ScheduleRequest::cancel({listener.epoch().value_or(0), number}));
-  if (!reply) return tl::make_unexpected(reply.error());
-  by_node_.settle(number, ScheduledOutcome::Result::cancelled, reason);
-  return {};
 }
 
 void OutputScheduler::on_outcome(const AcceptedWrite& which, ScheduledOutcome::Result result, Stamp at,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/core/scheduled.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "coupler/modbus/scheduled_output.hpp"
@@ -15,8 +17,13 @@ double in_seconds(Duration duration) { return std::chrono::duration<double>(dura
 
 }  // namespace
 
+bool WritesFrom::has(const ScheduledWrite& what) const {
+  return what.due >= from && (owner == 0 || what.owner == owner) &&
+         std::find(points.begin(), points.end(), what.write.point) != points.end();
+}
+
 std::string why_impossible(const ScheduledWrite& what, Time now) {
-  if (what.due < now - most_past)
+  if (what.due < now - std::max<Duration>(most_past, what.may_be_late))
     return fmt::format(
         "its time is {:.3f} s in the past; send a future time, by this machine's clock (not a simulation's)",
         in_seconds(now - what.due));

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "coupler/host/core/stamp.hpp"
 #include "coupler/host/core/write.hpp"
@@ -22,12 +23,26 @@ struct ScheduledWrite {
   Time due{};
   std::chrono::milliseconds duration{};  ///< after it the point has its former value again; 0: for good
   std::chrono::nanoseconds asked{};      ///< `due` as the caller said it, to be passed on
+  Duration may_be_late{};   ///< it is made at once if its time has passed by no more than this; 0: it is
+                            ///< refused then
+  std::uint64_t owner = 0;  ///< who has scheduled it, for WritesFrom; 0: nobody in particular
+};
+
+/// The scheduled writes of some points that are due at a time or later, and that an owner has scheduled.
+struct WritesFrom {
+  std::vector<std::uint32_t> points;  ///< indexes into Map::points
+  Time from{};
+  std::uint64_t owner = 0;  ///< 0: whoever has
+
+  bool has(const ScheduledWrite& what) const;
 };
 
 /// The answer to a call, at once.
 struct ScheduleAnswer {
   std::uint32_t number = 0;  ///< the number that ScheduledOutcome has, too; 0: refused
   std::string text;          ///< who does it; or why it is refused, and what to do
+  bool by_device = false;    ///< a timer of the device does it
+  bool is_full = false;      ///< it is refused because too many wait; there is room when one of them is over
 };
 
 /// The outcome of a write that was accepted. Each has exactly one.

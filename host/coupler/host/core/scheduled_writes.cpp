@@ -24,6 +24,18 @@ std::list<ScheduledWrites::Entry>::const_iterator ScheduledWrites::find(std::uin
                       [number](const Entry& entry) { return entry.what.number == number; });
 }
 
+bool ScheduledWrites::has_point(std::uint32_t point) const {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [point](const Entry& entry) { return ScheduledWrites::point(entry) == point; });
+}
+
+std::vector<std::uint32_t> ScheduledWrites::numbers_of(const WritesFrom& which) const {
+  std::vector<std::uint32_t> numbers;
+  for (const Entry& entry : entries_)
+    if (which.has(entry.what.what)) numbers.push_back(entry.what.number);
+  return numbers;
+}
+
 Time ScheduledWrites::due(const Entry& entry) {
   return entry.state == Entry::State::waiting ? entry.what.what.due : Time::max();
 }
@@ -52,6 +64,8 @@ void ScheduledWrites::queue(Entry& entry) {
   entry.state = Entry::State::being_written;
   Write write = entry.what.what.write;
   write.ordered = write.of_schedule = true;
+  if (const ScheduledWrite& what = entry.what.what; what.may_be_late > Duration::zero())
+    write.until = what.due + what.may_be_late;
   write.listener = &entry;
   queueing_ = true;
   try {
@@ -65,6 +79,12 @@ void ScheduledWrites::queue(Entry& entry) {
   queueing_ = false;
 }
 
+/// It has waited in the queue for longer than it may.
+bool ScheduledWrites::is_too_late(const Entry& entry) const {
+  const ScheduledWrite& what = entry.what.what;
+  return what.may_be_late > Duration::zero() && clock_.now() >= what.due + what.may_be_late;
+}
+
 void ScheduledWrites::on_result(const Entry& entry, const WriteResult& result) {
   const Stamp written = link_.last_write();
   const Stamp now{clock_.now(), {}};
@@ -76,7 +96,7 @@ void ScheduledWrites::on_result(const Entry& entry, const WriteResult& result) {
       return finish(entry, Kind::cancelled, now, to_string(modbus::Reason::safe_state));
     case Outcome::kept:
     case Outcome::dropped:
-      if (queueing_) break;
+      if (queueing_ || is_too_late(entry)) break;
       return finish(entry, Kind::cancelled, now, to_string(modbus::Reason::connection));
     case Outcome::exception: return finish(entry, Kind::failed, written, why);
     case Outcome::not_taken:

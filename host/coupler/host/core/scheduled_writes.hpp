@@ -27,6 +27,10 @@ class ScheduledWrites {
   void add(const AcceptedWrite& what);
   /// Returns whether the one with that number waits or is being written.
   bool has(std::uint32_t number) const { return find(number) != entries_.end(); }
+  /// Returns whether one to the point waits or is being written.
+  bool has_point(std::uint32_t point) const;
+  /// Returns the numbers of those that wait or are being written.
+  std::vector<std::uint32_t> numbers_of(const WritesFrom& which) const;
   /// The number of those that wait or are being written.
   std::size_t size() const { return entries_.size(); }
 
@@ -64,6 +68,7 @@ class ScheduledWrites {
   void cancel_if(Which which, Stamp at, const std::string& reason);
   Entry* next(Time now);
   void queue(Entry& entry);
+  bool is_too_late(const Entry& entry) const;
   void on_result(const Entry& entry, const WriteResult& result);
   void finish(const Entry& entry, ScheduledOutcome::Result result, Stamp at, const std::string& reason);
   void remove(const Entry& entry);
