@@ -79,6 +79,7 @@ class PositionsReader {
                    as_in_example());
     if (!good) return {};
     std::vector<AxisPosition> ascending;
+    ascending.reserve(by_position_.size());
     for (const auto& [position, given] : by_position_) ascending.push_back({given.value, position});
     return ascending;
   }

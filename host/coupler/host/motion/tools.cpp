@@ -44,7 +44,9 @@ void Tools::begin(std::size_t tool, ToolEnd end, Time now, const Done& done, Goa
   calls_.wake();
 }
 
-void Tools::cancel(std::size_t tool, GoalKey key, Time now) {
+/// Calls change(motion) if the goal has no result yet.
+template <class Change>
+void Tools::change_goal(std::size_t tool, GoalKey key, Change change) {
   {
     const std::scoped_lock lock(writing_, mutex_);
     Running& running = running_[tool];
@@ -52,9 +54,17 @@ void Tools::cancel(std::size_t tool, GoalKey key, Time now) {
     // The others have ended: they wait for step() to give their results.
     const GoalKey& last = running.goals.back().key;
     if (last.sender != key.sender || last.number != key.number) return;
-    running.motion.cancel(now);
+    change(running.motion);
   }
   calls_.wake();
+}
+
+void Tools::cancel(std::size_t tool, GoalKey key, Time now) {
+  change_goal(tool, key, [now](ToolMotion& motion) { motion.cancel(now); });
+}
+
+void Tools::abort(std::size_t tool, GoalKey key, const std::string& why, Time now) {
+  change_goal(tool, key, [&](ToolMotion& motion) { motion.disturb(why, now); });
 }
 
 std::optional<JointPosition> Tools::position(std::size_t tool, Time now) {

@@ -57,6 +57,8 @@ class Tools {
   void begin(std::size_t tool, ToolEnd end, Time now, const Done& done, GoalKey key = {});
   /// Cancels a goal that has no result yet.
   void cancel(std::size_t tool, GoalKey key, Time now);
+  /// Aborts it: nothing more is driven.
+  void abort(std::size_t tool, GoalKey key, const std::string& why, Time now);
   /// Returns nothing while the device is offline, an input has no good value, or both ends are seen.
   std::optional<JointPosition> position(std::size_t tool, Time now);
   /// Somebody else writes the point: the tools that have it as an output end their goals.
@@ -118,6 +120,8 @@ class Tools {
     std::vector<std::pair<Done, ToolResult>> results;
   };
 
+  template <class Change>
+  void change_goal(std::size_t tool, GoalKey key, Change change);
   void on_result(Sent& sent, const WriteResult& result);
   std::optional<JointPosition> position_of(std::size_t tool, Time now) const;
   std::optional<Time> known_at(const Running& running, ToolPart part, Time now) const;

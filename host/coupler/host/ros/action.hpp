@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "coupler/host/core/clock.hpp"
+#include "coupler/host/motion/trajectory_plan.hpp"
 
 namespace coupler::host {
 
@@ -74,5 +75,18 @@ struct GripperState {
 };
 /// control_msgs/GripperCommand or control_msgs/ParallelGripperCommand.
 using GripperServer = ServedAction<GripperGoal, GripperState>;
+
+/// The result of a trajectory, and what its joints are doing meanwhile.
+struct TrajectoryState {
+  TrajectoryCode code = TrajectoryCode::successful;
+  std::string text;
+  std::vector<std::string> joints;  ///< this and what follows is for the feedback
+  std::vector<double> desired;
+  std::vector<double> actual;  ///< NaN: it is unknown
+  std::chrono::nanoseconds from_start{};
+  std::chrono::nanoseconds stamp{};  ///< wall time
+};
+/// control_msgs/FollowJointTrajectory.
+using TrajectoryServer = ServedAction<TrajectoryGoal, TrajectoryState>;
 
 }  // namespace coupler::host

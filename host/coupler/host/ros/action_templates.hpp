@@ -84,6 +84,52 @@ struct GripperMessages {
   }
 };
 
+/// control_msgs/FollowJointTrajectory.
+struct TrajectoryMessages {
+  template <class Message>
+  static TrajectoryGoal goal(const Message& goal) {
+    TrajectoryGoal wanted;
+    wanted.joints.assign(goal.trajectory.joint_names.begin(), goal.trajectory.joint_names.end());
+    for (const auto& point : goal.trajectory.points)
+      wanted.points.push_back(
+          {{point.positions.begin(), point.positions.end()}, message_time(point.time_from_start)});
+    wanted.start = message_time(goal.trajectory.header.stamp);
+    for (const auto& tolerance : goal.goal_tolerance)
+      wanted.goal_tolerance.push_back({tolerance.name, tolerance.position});
+    wanted.goal_time_tolerance = message_time(goal.goal_time_tolerance);
+    wanted.is_multi_dof = is_multi_dof(goal, 0);
+    return wanted;
+  }
+  template <class Message>
+  static void put_result(Message& message, const TrajectoryState& result) {
+    message.error_code = static_cast<int>(result.code);
+    message.error_string = result.text;
+  }
+  template <class Message>
+  static void put_feedback(Message& message, const TrajectoryState& now) {
+    put_time(message.header.stamp, now.stamp);
+    message.joint_names = {now.joints.begin(), now.joints.end()};
+    message.desired.positions = {now.desired.begin(), now.desired.end()};
+    message.actual.positions = {now.actual.begin(), now.actual.end()};
+    for (std::size_t i = 0; i < now.desired.size(); ++i)
+      message.error.positions.push_back(now.desired[i] - now.actual[i]);
+    for (auto* point : {&message.desired, &message.actual, &message.error})
+      put_time(point->time_from_start, now.from_start);
+  }
+
+ private:
+  /// Only ROS 2's goals have a trajectory of several degrees of freedom.
+  template <class Message>
+  static auto is_multi_dof(const Message& goal, int /*preferred*/)
+      -> decltype(!goal.multi_dof_trajectory.points.empty()) {
+    return !goal.multi_dof_trajectory.points.empty();
+  }
+  template <class Message>
+  static bool is_multi_dof(const Message& /*goal*/, long /*otherwise*/) {
+    return false;
+  }
+};
+
 /// control_msgs/ParallelGripperCommand, of one joint.
 struct ParallelGripperMessages {
   std::string joint;

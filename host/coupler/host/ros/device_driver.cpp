@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "coupler/codec/text.hpp"
+#include "coupler/host/ros/device_motion.hpp"
 #include "coupler/host/ros/device_panel.hpp"
-#include "coupler/host/ros/device_tools.hpp"
 #include "coupler/host/ros/device_waits.hpp"
 #include "coupler/host/ros/shutdown.hpp"
 #include "coupler/host/ros/start_progress.hpp"
@@ -138,10 +138,16 @@ void DeviceDriver::start_followers(const Followed& followed) {
   };
   if (followed.recording) add(DeviceRecording::start(map_, values_, *followed.recording, report));
   if (followed.panel) add(start_panel(map_, values_, *followed.panel, report));
-  if (!map_.tools.empty())
-    add(DeviceTools::start(
-        node_, map_, values_, subscribers_, [this](const Write& write) { driven().write(write); },
-        [this](std::uint32_t point) { thread_.want(point, true); }));
+  if (!map_.tools.empty() || !map_.axes.empty())
+    add(DeviceMotion::start(node_, map_, values_, subscribers_,
+                            {[this](const Write& write) { driven().write(write); },
+                             [this](std::uint32_t point) { thread_.want(point, true); },
+                             [this](const ScheduledWrite& what, Reply<ScheduleAnswer>::Give give) {
+                               driven().schedule(what, std::move(give));
+                             },
+                             [this](WritesFrom which, Reply<CallAnswer>::Give give) {
+                               thread_.cancel_all(std::move(which), std::move(give));
+                             }}));
   if (can_wait_for(map_))
     add(DeviceWaits::start(node_, map_, values_, subscribers_,
                            [this](std::uint32_t point) { thread_.want(point, true); }));
@@ -269,8 +275,7 @@ void DeviceDriver::on_online(bool online) {
 }
 
 void DeviceDriver::on_scheduled(const ScheduledOutcome& outcome) {
-  if (outcome.result == ScheduledOutcome::Result::done)
-    for (const auto& follower : followers_) follower->write_comes(outcome.point);
+  for (const auto& follower : followers_) follower->sink().on_scheduled(outcome);
   measure_wall();
   publish_scheduled_(outcome);
 }

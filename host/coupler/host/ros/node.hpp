@@ -221,6 +221,9 @@ class Node {
   virtual std::unique_ptr<GripperServer> offer_parallel_gripper(const std::string& name,
                                                                 const std::string& joint,
                                                                 GripperServer::Handler handler) = 0;
+  /// Serves control_msgs/FollowJointTrajectory. Null if the driver was built without control_msgs.
+  virtual std::unique_ptr<TrajectoryServer> offer_trajectories(const std::string& name,
+                                                               TrajectoryServer::Handler handler) = 0;
 
   /// publish_diagnostics() calls `make` of every entry, in the order in which they were added. The entries of
   /// all devices are one message: a publisher of /diagnostics keeps only the newest.

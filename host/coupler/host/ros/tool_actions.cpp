@@ -66,7 +66,7 @@ void ToolActions::offer() {
   }
   if (!is_built_in)
     node_.log(Level::info, fmt::format("{}: the tools have no {}, because this driver was built without "
-                                       "control_msgs; docs/tools.md says how to get that",
+                                       "control_msgs; docs/driver.md says how to get it",
                                        map_.name, gripper_action));
 }
 

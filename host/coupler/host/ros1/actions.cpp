@@ -2,6 +2,7 @@
 // The actions of Ros1Node.
 #include <coupler_driver/WaitForAction.h>
 #ifdef COUPLER_WITH_CONTROL_MSGS
+#include <control_msgs/FollowJointTrajectoryAction.h>
 #include <control_msgs/GripperCommandAction.h>
 #endif
 
@@ -36,7 +37,20 @@ std::unique_ptr<GripperServer> Ros1Node::offer_gripper(const std::string& name,
   return std::make_unique<TypedAction<GripperServer, Server, GripperMessages>>(
       handle_, name, GripperMessages(), std::move(handler));
 }
+
+std::unique_ptr<TrajectoryServer> Ros1Node::offer_trajectories(const std::string& name,
+                                                               TrajectoryServer::Handler handler) {
+  note_action(name);
+  using Server = TypedActionServer<control_msgs::FollowJointTrajectoryAction>;
+  return std::make_unique<TypedAction<TrajectoryServer, Server, TrajectoryMessages>>(
+      handle_, name, TrajectoryMessages(), std::move(handler));
+}
 #else
+std::unique_ptr<TrajectoryServer> Ros1Node::offer_trajectories(const std::string& /*name*/,
+                                                               TrajectoryServer::Handler /*handler*/) {
+  return nullptr;
+}
+
 std::unique_ptr<GripperServer> Ros1Node::offer_gripper(const std::string& /*name*/,
                                                        GripperServer::Handler /*handler*/) {
   return nullptr;

@@ -2,6 +2,7 @@
 // The actions of Ros2Node.
 #include <coupler_driver/action/wait_for.hpp>
 #ifdef COUPLER_WITH_CONTROL_MSGS
+#include <control_msgs/action/follow_joint_trajectory.hpp>
 #include <control_msgs/action/gripper_command.hpp>
 #endif
 #ifdef COUPLER_WITH_PARALLEL_GRIPPER
@@ -32,7 +33,20 @@ std::unique_ptr<GripperServer> Ros2Node::offer_gripper(const std::string& name,
   return std::make_unique<TypedAction<GripperServer, Server, GripperMessages>>(node_, name, GripperMessages(),
                                                                                std::move(handler));
 }
+
+std::unique_ptr<TrajectoryServer> Ros2Node::offer_trajectories(const std::string& name,
+                                                               TrajectoryServer::Handler handler) {
+  remappings_.add_name(name, false);
+  using Server = rcl::TypedActionServer<control_msgs::action::FollowJointTrajectory>;
+  return std::make_unique<TypedAction<TrajectoryServer, Server, TrajectoryMessages>>(
+      node_, name, TrajectoryMessages(), std::move(handler));
+}
 #else
+std::unique_ptr<TrajectoryServer> Ros2Node::offer_trajectories(const std::string& /*name*/,
+                                                               TrajectoryServer::Handler /*handler*/) {
+  return nullptr;
+}
+
 std::unique_ptr<GripperServer> Ros2Node::offer_gripper(const std::string& /*name*/,
                                                        GripperServer::Handler /*handler*/) {
   return nullptr;

@@ -58,6 +58,8 @@ class Ros2Node : public Node {
                                                GripperServer::Handler handler) override;
   std::unique_ptr<GripperServer> offer_parallel_gripper(const std::string& name, const std::string& joint,
                                                         GripperServer::Handler handler) override;
+  std::unique_ptr<TrajectoryServer> offer_trajectories(const std::string& name,
+                                                       TrajectoryServer::Handler handler) override;
   void add_diagnostics(const std::string& name, std::function<DiagnosticEntry()> make) override;
   void publish_diagnostics() override;
   void start() override;

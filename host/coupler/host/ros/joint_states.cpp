@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/host/ros/tool_joints.hpp"
+#include "coupler/host/ros/joint_states.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -10,20 +10,19 @@
 
 namespace coupler::host {
 
-ToolJoints::ToolJoints(Node& node, const Map& map, Tools& tools) : tools_(tools) {
-  for (const Tool& tool : map.tools) names_.push_back(joint_name(map, tool));
+JointStates::JointStates(Node& node, const Map& map, const Joints& joints) : joints_(joints) {
   if (find(map, joint_states_topic) == nullptr)
     publish_ = node.advertise_joints(fmt::format("{}/{}", map.name, joint_states_topic));
 }
 
-void ToolJoints::publish(Time now) {
+void JointStates::publish(Time now) {
   if (!publish_) return;
   known_.clear();
   Time at = now;
-  for (std::size_t i = 0; i < names_.size(); ++i) {
-    const auto joint = tools_.position(i, now);
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const auto joint = joints_.position(i, now);
     if (!joint) continue;
-    known_.push_back({names_[i], joint->position});
+    known_.push_back({joints_[i].name, joint->position});
     at = std::min(at, joint->at);
   }
   if (known_.empty() || at <= last_) return;

@@ -5,17 +5,17 @@
 #include <vector>
 
 #include "coupler/host/core/wall_time.hpp"
-#include "coupler/host/motion/tools.hpp"
+#include "coupler/host/motion/joints.hpp"
 #include "coupler/host/ros/node.hpp"
 
 namespace coupler::host {
 
-/// The topic `<name>/joint_states`: where the tools of a device are, as joints. A joint whose position is not
-/// known is left out. A point with the same name takes precedence.
-class ToolJoints {
+/// The topic `<name>/joint_states`: where the joints of a device are. A joint whose position is not known is
+/// left out. A point with the same name takes precedence.
+class JointStates {
  public:
-  /// The tools must outlive it, and so must the storage of `map`.
-  ToolJoints(Node& node, const Map& map, Tools& tools);
+  /// The joints must outlive it.
+  JointStates(Node& node, const Map& map, const Joints& joints);
 
   /// From one thread only. The stamp is the latest time at which all of the joints were known to be there.
   /// Publishes nothing unless the stamp is later than the last one: MoveIt treats even an equal stamp as a
@@ -23,8 +23,7 @@ class ToolJoints {
   void publish(Time now);
 
  private:
-  Tools& tools_;
-  std::vector<std::string> names_;  ///< by tool
+  const Joints& joints_;
   Node::PublishJoints publish_;     ///< empty: a point has the name
   std::vector<Node::Joint> known_;  ///< a buffer
   Time last_{};                     ///< of the last message
