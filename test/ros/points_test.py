@@ -4,9 +4,11 @@ import math
 import os
 
 from coupler_driver.msg import Points
+from coupler_driver.srv import Write
 from std_msgs.msg import Bool
 
 from support import process, testing
+from support.actions import topics_below
 from support.device import Device
 from support.patience import NO_TIMEOUT
 from support.topics import type_of
@@ -31,11 +33,12 @@ ROS2 = os.environ.get("ROS_VERSION") == "2"
 
 
 class PointsTest(testing.RosTest):
-    def start(self, lamp):
-        device = Device().start()
+    def start(self, lamp, *arguments):
+        device = self.device = Device().start()
         self.addCleanup(device.stop)
         text = MAP.replace("{timeout}", str(NO_TIMEOUT)).replace("{name}", self.name).replace("{lamp}", lamp)
-        self.driver(f"_map:={process.write_map(text)}", f"_port:={device.port}").wait_for("connected")
+        self.program = self.driver(f"_map:={process.write_map(text)}", f"_port:={device.port}", *arguments)
+        self.program.wait_for("connected")
 
     def test_each_point_is_described(self):
         self.start("lamp")
@@ -54,6 +57,16 @@ class PointsTest(testing.RosTest):
         package = "std_msgs/msg/" if ROS2 else "std_msgs/"
         self.assertEqual([point.message for point in (lamp, level, row, mode, speed, label)],
                          [package + name for name in ("Bool", "Float64", "Float32MultiArray", "UInt8", "UInt16", "String")])
+
+    def test_only_points_that_are_chosen_have_topics(self):
+        self.start("lamp", "_topics:=l*,mdoe")
+        self.program.wait_for("'topics' has 'mdoe', and no point has such a name; did you mean 'mode'")
+        self.topic(f"/{self.name}/lamp", Bool).wait_for(lambda message: message is False)
+        names = {topic.split("/")[2] for topic in topics_below(f"/{self.name}/")}
+        self.assertTrue({"lamp", "level", "label"} <= names, names)
+        self.assertFalse({"row", "mode", "speed"} & names, names)
+        self.assertTrue(self.service(f"/{self.name}/write", Write)("speed", "7").success, "services reach the others, too")
+        self.assertEqual(self.device.tables["holding_registers"][2], 7)
 
     def test_a_point_of_that_name_keeps_its_topic(self):
         self.start("points")

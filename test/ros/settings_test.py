@@ -88,7 +88,7 @@ class Settings(SettingsTest):
         path = self.map()
         empty = {name: "" for name in ("mapping", "maps", "name", "address", "port", "unit", "framing", "serial", "baud", "parity",
                                        "stop_bits", "rs485", "certificate", "key", "ca", "tls_name", "pin", "rate", "timeout",
-                                       "verify", "poll", "record", "panel")}
+                                       "verify", "poll", "topics", "record", "panel")}
         rospy.set_param("/empty_io", {**empty, "map": path})
         self.addCleanup(rospy.delete_param, "/empty_io")
         self.assert_drives("__name:=empty_io")

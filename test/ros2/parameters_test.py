@@ -23,7 +23,7 @@ mapping:
 SETTINGS = {"map": TEXT, "maps": TEXTS, "name": TEXT, "address": TEXT, "port": WHOLE, "unit": WHOLE,
             "framing": TEXT, "serial": TEXT, "baud": WHOLE, "parity": TEXT, "stop_bits": WHOLE, "rs485": TEXT,
             "certificate": TEXT, "key": TEXT, "ca": TEXT, "tls_name": TEXT, "pin": TEXT, "rate": REAL,
-            "timeout": REAL, "verify": TEXT, "poll": TEXT, "record": TEXT, "panel": WHOLE, "use_sim_time": BOOL}
+            "timeout": REAL, "verify": TEXT, "poll": TEXT, "topics": TEXTS, "record": TEXT, "panel": WHOLE, "use_sim_time": BOOL}
 OF_A_DEVICE = [name for name in SETTINGS if name not in ("map", "maps", "use_sim_time")]
 
 
@@ -89,14 +89,16 @@ class Declared(ParametersTest):
 
     def test_a_setting_of_one_device_of_several_stands_below_its_name(self):
         maps = [process.write_map(MAP.format(name=name, port=port)) for name, port in (("given", self.peer.port), ("belt", free_port()))]
-        self.driver("--maps", ",".join(maps), "--ros-args", "-p", f"belt.port:={self.peer.port}").wait_for("belt: connected")
+        self.driver("--maps", ",".join(maps), "--topics", "lev*,l?vel", "--ros-args", "-p", f"belt.port:={self.peer.port}").wait_for(
+            "belt: connected")
         listed = self.parameters.list()
         wanted = {f"{device}.{name}" for device in ("given", "belt") for name in OF_A_DEVICE}
         self.assertLessEqual(wanted, set(listed.names))
         self.assertEqual(set(listed.prefixes), {"given", "belt"})
         self.assertEqual(set(self.parameters.list("belt").names), {name for name in wanted if name.startswith("belt.")})
         self.assertNotIn("belt.port", self.parameters.list(depth=1).names)
-        self.assertEqual(self.parameters.get("belt.port", "given.address", "maps"), [self.peer.port, "127.0.0.1", maps])
+        self.assertEqual(self.parameters.get("belt.port", "given.address", "maps", "belt.topics"),
+                         [self.peer.port, "127.0.0.1", maps, ["lev*", "l?vel"]])
         descriptor = self.parameters.describe("belt.port")[0]
         self.assertEqual((descriptor.type, descriptor.read_only, descriptor.integer_range[0].to_value), (WHOLE, True, 65535))
 

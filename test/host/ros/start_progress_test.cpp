@@ -6,11 +6,6 @@
 namespace coupler::host {
 namespace {
 
-TEST(StartProgress, A_map_with_more_points_than_ROS_can_bear_is_warned_of) {
-  EXPECT_FALSE(too_many_points(10'000));
-  EXPECT_EQ(too_many_points(65'000).value_or("").substr(0, 12), "65000 points");
-}
-
 TEST(StartProgress, How_far_a_long_start_is_is_said_once_in_a_period) {
   const Time begin{};
   StartProgress progress(65000, "have their topics", begin);

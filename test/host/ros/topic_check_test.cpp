@@ -52,10 +52,11 @@ struct TopicCheckTest : ::testing::Test {
     return lines;
   }
 
-  std::array<Point, 4> points{point("lamp", Table::coils, Access::read_write),
+  std::array<Point, 5> points{point("lamp", Table::coils, Access::read_write),
                               point("flow", Table::input_registers, Access::read),
                               point("order", Table::holding_registers, Access::write),
-                              point("valve", Table::coils, Access::read_write)};
+                              point("valve", Table::coils, Access::read_write),
+                              point("level", Table::holding_registers, Access::read_write)};
   Map map;
   TopicCheck check;
 };
@@ -72,6 +73,14 @@ TEST_F(TopicCheckTest, A_subscriber_with_another_type_is_told_what_to_subscribe_
     EXPECT_THAT(
         told({{topic, "/ui", subscribes, "std_msgs/Float32"}}),
         ElementsAre(StartsWith(std::string(topic) + ": node /ui subscribes to std_msgs/Float32, and ")));
+}
+
+TEST_F(TopicCheckTest, A_point_that_was_not_chosen_to_have_topics_is_told) {
+  EXPECT_THAT(
+      told({{"/cell/press/level", "/ui", subscribes, "std_msgs/UInt16"},
+            {"/cell/press/level/write", "/ui", publishes, "std_msgs/UInt16"}}),
+      ElementsAre(testing::EndsWith("level has no topics. Name it in the setting 'topics' of the driver"),
+                  testing::EndsWith("level has no topics. Name it in the setting 'topics' of the driver")));
 }
 
 TEST_F(TopicCheckTest, What_fits_and_a_type_that_is_any_or_not_known_is_not_told) {

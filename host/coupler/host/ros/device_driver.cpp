@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "coupler/codec/text.hpp"
+#include "coupler/host/ros/advertise_points.hpp"
 #include "coupler/host/ros/device_motion.hpp"
 #include "coupler/host/ros/device_panel.hpp"
 #include "coupler/host/ros/device_waits.hpp"
@@ -18,39 +19,6 @@
 
 namespace coupler::host {
 namespace {
-
-std::string topic(const Map& map, std::string_view point) { return fmt::format("{}/{}", map.name, point); }
-
-/// Many topics take their time, above all where the processor is busy: a signal ends that.
-std::vector<std::unique_ptr<PointPublisher>> advertise_all(Node& node, const Map& map,
-                                                           SubscriberCounts& subscribers) {
-  std::vector<std::unique_ptr<PointPublisher>> result(map.points.size());
-  if (const auto line = too_many_points(map.points.size()))
-    node.log(Level::warning, fmt::format("{}: {}", map.name, *line));
-  for_each_point(node, map, "have their topics", [&](std::uint32_t i) {
-    if (is_readable(map.points[i]))
-      result[i] = node.advertise(topic(map, map.points[i].name), map.points[i], i, subscribers);
-  });
-  return result;
-}
-
-using AdvertiseWithTime = decltype(&Node::advertise_stamped);
-
-/// Advertises `<point>/<ending>` of each stamped point. By point; null for the others, and where a point of
-/// the map has that name.
-std::vector<std::unique_ptr<PointPublisher>> advertise_with_time(Node& node, const Map& map,
-                                                                 SubscriberCounts& subscribers,
-                                                                 const WallTime& wall,
-                                                                 std::string_view ending,
-                                                                 AdvertiseWithTime advertise) {
-  std::vector<std::unique_ptr<PointPublisher>> result(map.points.size());
-  for_each_point(node, map, "have their topics with stamps", [&](std::uint32_t i) {
-    if (!map.points[i].host.stamped) return;
-    if (const std::string name = fmt::format("{}/{}", map.points[i].name, ending); find(map, name) == nullptr)
-      result[i] = (node.*advertise)(topic(map, name), map.points[i], i, subscribers, wall);
-  });
-  return result;
-}
 
 /// A point of that name has the topic.
 std::shared_ptr<void> publish_points(Node& node, const Map& map) {
@@ -79,14 +47,18 @@ std::unique_ptr<Link> traced(std::unique_ptr<Link> link, std::string device, Nod
 
 }  // namespace
 
-DeviceDriver::DeviceDriver(Node& node, const Map& map, std::unique_ptr<Link> link)
+DeviceDriver::DeviceDriver(Node& node, const Map& map, std::unique_ptr<Link> link,
+                           const std::vector<std::string>& topics)
     : node_(node),
       map_(map),
       values_(map_),
       subscribers_(map.points.size()),
-      publishers_(advertise_all(node, map_, subscribers_)),
-      stamped_(advertise_with_time(node, map_, subscribers_, wall_, "stamped", &Node::advertise_stamped)),
-      samples_(advertise_with_time(node, map_, subscribers_, wall_, "sample", &Node::advertise_sample)),
+      has_topics_(choose_topics(node, map_, topics)),
+      publishers_(advertise_all({node, map_, subscribers_, has_topics_})),
+      stamped_(advertise_with_time({node, map_, subscribers_, has_topics_}, wall_, "stamped",
+                                   &Node::advertise_stamped)),
+      samples_(advertise_with_time({node, map_, subscribers_, has_topics_}, wall_, "sample",
+                                   &Node::advertise_sample)),
       points_(publish_points(node, map_)),
       publish_online_(advertise_online(node, map)),
       publish_status_(node.advertise_status(topic(map, "status"), map)),
@@ -119,7 +91,7 @@ void DeviceDriver::begin(const Followed& followed) {
                    [this] { return thread_.scheduled(); }, [this] { return thread_.statistics(); }});
   for (const auto& follower : followers_) follower->begin();
   for_each_point(node_, map_, "have their topics and services for writes", [this](std::uint32_t i) {
-    if (!is_writable(map_.points[i])) return;
+    if (!has_topics_[i] || !is_writable(map_.points[i])) return;
     subscriptions_.push_back(node_.subscribe(topic(map_, map_.points[i].name) + "/write", map_, i, writes_));
     services_.offer_set(i);
   });
@@ -198,6 +170,7 @@ void DeviceDriver::on_told(std::uint32_t point) {
 void DeviceDriver::publish(Span<const std::uint32_t> points, bool is_told) {
   bool is_measured = false;  // once, so that the stamps of one read are equal
   for (const std::uint32_t point : points) {
+    if (!has_topics_[point]) continue;
     const Sample sample{values_.stamp(point), is_told, values_.differs(point)};
     publishers_[point]->publish(values_.registers(point), sample);
     if (sample.is_new && map_.points[point].format.type == codec::Type::STRING) check_text(point);

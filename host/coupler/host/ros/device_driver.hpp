@@ -34,9 +34,11 @@ class DeviceDriver : public Sink {
     std::optional<unsigned> panel;         ///< the port of one
   };
 
-  /// Offers its topics; starts nothing before begin(). The map's views must outlive it. Callbacks of the node
-  /// refer to it: the node must be shut down before it is destroyed, and publish no more diagnostics.
-  DeviceDriver(Node& node, const Map& map, std::unique_ptr<Link> link);
+  /// Offers its topics; starts nothing before begin(). `topics`: see choose_points(). The map's views must
+  /// outlive it. Callbacks of the node refer to it: the node must be shut down before it is destroyed, and
+  /// publish no more diagnostics.
+  DeviceDriver(Node& node, const Map& map, std::unique_ptr<Link> link,
+               const std::vector<std::string>& topics);
   ~DeviceDriver() override { services_.stop(); }
 
   /// Connects to the device, listens to what is to be written, and offers services, which takes as long as
@@ -87,7 +89,8 @@ class DeviceDriver : public Sink {
   Map map_;
   ValueTable values_;
   SubscriberCounts subscribers_;
-  std::vector<std::unique_ptr<PointPublisher>> publishers_;  ///< by point; null where it cannot be read
+  const std::vector<bool> has_topics_;                       ///< by point
+  std::vector<std::unique_ptr<PointPublisher>> publishers_;  ///< by point; null where it has no topic
   WallTime wall_;
   LogLineLimit wall_lines_;
   std::vector<std::unique_ptr<PointPublisher>> stamped_;  ///< by point; null where it is not stamped

@@ -101,7 +101,10 @@ void start_all(const Devices& devices, Node& node, Drivers& drivers) {
     if (followed.recording)
       followed.recording = recording_path(*followed.recording, source.map.name, devices.size() == 1);
     while (followed.panel && !panels.insert(*followed.panel).second) ++*followed.panel;
-    watch.add(std::make_unique<DeviceDriver>(node, source.map, std::move(*link++))).begin(followed);
+    watch
+        .add(std::make_unique<DeviceDriver>(node, source.map, std::move(*link++),
+                                            settings.topics.value_or(std::vector<std::string>())))
+        .begin(followed);
   }
 }
 

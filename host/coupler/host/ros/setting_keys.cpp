@@ -33,6 +33,9 @@ tl::unexpected<std::string> wrong(const SettingKey& key, const std::string& text
 }
 
 std::string to_text(const std::string& value) { return value; }
+std::string to_text(const std::vector<std::string>& value) {
+  return fmt::format("{}", fmt::join(value, ","));
+}
 std::string to_text(bool value) { return value ? "true" : "false"; }
 std::string to_text(milliseconds value) {
   return fmt::format("{}s", std::chrono::duration<double>(value).count());
@@ -209,30 +212,39 @@ std::string_view without(std::string_view text, std::string_view front, std::str
   return text.substr(from, text.find_last_not_of(back) - from + 1);
 }
 
-/// Completes the row of `maps`, a list: "a.yaml,b.yaml", or [a.yaml, "b.yaml"] as in YAML. Its `prefer` does
-/// nothing, because overlay() treats `map` and `maps` as one setting.
+tl::expected<std::vector<std::string>, std::string> names(const SettingKey& key, const std::string& text) {
+  auto items = items_of(text);
+  if (items.empty()) return wrong(key, text, "a list of names, as in [pump_*,tank/*]");
+  return items;
+}
+
+/// Completes the row of `maps`, a list. Its `prefer` does nothing, because overlay() treats `map` and `maps`
+/// as one setting.
 SettingKey maps_row(SettingKey row) {
   row.set = [key = row](Settings& settings, const std::string& text) -> tl::expected<void, std::string> {
-    std::string_view rest = without(text, " [", " ]");
-    settings.maps.clear();
-    while (!rest.empty()) {
-      const std::size_t comma = std::min(rest.find(','), rest.size());
-      const std::string_view item = without(rest.substr(0, comma), " '\"", " '\"");
-      if (!item.empty()) settings.maps.emplace_back(item);
-      rest.remove_prefix(std::min(comma + 1, rest.size()));
-    }
+    settings.maps = items_of(text);
     if (settings.maps.empty()) return wrong(key, text, "a list of paths, as in [a.yaml,b.yaml]");
     return {};
   };
   row.text = [](const Settings& settings) {
-    return settings.maps.empty() ? std::nullopt
-                                 : std::optional(fmt::format("{}", fmt::join(settings.maps, ",")));
+    return settings.maps.empty() ? std::nullopt : std::optional(to_text(settings.maps));
   };
   row.prefer = [](Settings& /*weak*/, const Settings& /*strong*/) {};
   return row;
 }
 
 }  // namespace
+
+std::vector<std::string> items_of(std::string_view list) {
+  std::vector<std::string> items;
+  for (std::string_view rest = without(list, " [", " ]"); !rest.empty();) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    const std::string_view item = without(rest.substr(0, comma), " '\"", " '\"");
+    if (!item.empty()) items.emplace_back(item);
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  }
+  return items;
+}
 
 // NOLINTNEXTLINE(readability-function-size): a table
 const std::vector<SettingKey>& setting_keys() {
@@ -304,6 +316,10 @@ const std::vector<SettingKey>& setting_keys() {
               "which points are read: all (default), or subscribed: those that have subscribers; instead "
               "of the map's"),
           &Settings::poll, word<Poll>, [](Map & map) -> auto& { return map.poll; }),
+      row<std::vector<std::string>>(
+          {"topics", "", Kind::list, 0, 0, "",
+           "the points that have topics, as in --topics 'pump_*,tank/*'; by default all, or the first 10000"},
+          &Settings::topics, names),
       row<std::string>(
           text_key("record",
                    "file of a recording of every change, as `coupler record` makes it; of several "

@@ -35,8 +35,9 @@ struct Settings {
   std::optional<std::chrono::milliseconds> timeout;  ///< above 0; given in seconds
   std::optional<Verify> verify;
   std::optional<Poll> poll;
-  std::optional<std::string> record;   ///< absolute path of a recording
-  std::optional<std::uint16_t> panel;  ///< port of a live page; above 0
+  std::optional<std::vector<std::string>> topics;  ///< patterns of the points that have topics
+  std::optional<std::string> record;               ///< absolute path of a recording
+  std::optional<std::uint16_t> panel;              ///< port of a live page; above 0
 };
 
 /// Everything about one setting, which is both a ROS parameter and an argument (`--key VALUE`) of that name.
@@ -83,6 +84,9 @@ using ParameterText = tl::expected<std::optional<std::string>, std::string>;
 tl::expected<Settings, std::string> settings_among(
     std::string_view prefix,
     const std::function<ParameterText(const SettingKey& key, const std::string& name)>& text_of);
+
+/// Returns the items of the text of a list: "a.yaml,b.yaml", or [a.yaml, "b.yaml"] as in YAML.
+std::vector<std::string> items_of(std::string_view list);
 
 /// Returns what was set, in the form that set() takes; nullopt if it was not set.
 std::optional<std::string> text_of(const Settings& settings, std::string_view key);

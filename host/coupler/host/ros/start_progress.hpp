@@ -40,21 +40,6 @@ class StartProgress {
   Time said_;
 };
 
-/// Returns a warning for a map that has more points than ROS has room for topics: 10,000 are made in 6 to 11
-/// s, and 65,000 in minutes. ROS 1 looks for a topic among all of a node's, one after another, whenever it is
-/// made and at each message.
-inline std::optional<std::string> too_many_points(std::size_t points) {
-  constexpr std::size_t most = 10'000;
-  if (points <= most) return std::nullopt;
-  return fmt::format(
-      "{} points are more topics than ROS is made for: it takes minutes until all are there, and each "
-      "message "
-      "takes longer the more there are. Join values that belong together in one point with 'count', and "
-      "leave "
-      "what ROS does not need out of the map, so that it has at most {} points",
-      points, most);
-}
-
 /// Calls `act` with the number of each point of the map, and logs how far that is. A signal ends it.
 template <class Act>
 void for_each_point(Node& node, const Map& map, std::string_view what, const Act& act) {

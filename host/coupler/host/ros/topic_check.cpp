@@ -204,10 +204,25 @@ std::string TopicCheck::misspelt(const Endpoint& other) const {
   const Device* const device = device_of(other.topic);
   const std::string rest = device == nullptr ? std::string() : other.topic.substr(device->space.size());
   if (other.publishes && "/" + rest == write_end) return without_point(other, *device);
+  if (device != nullptr)
+    if (std::string text = without_topics(other, *device, rest); !text.empty()) return text;
   const std::string meant = device == nullptr ? (other.publishes ? beside_device(other.topic) : std::string())
                             : other.publishes ? write_meant_by(*device, rest)
                                               : value_meant_by(*device, rest);
   return meant.empty() ? meant : fmt::format("{}; did you mean {}?", nobody_there(other), meant);
+}
+
+/// At a point that was not chosen to have topics.
+std::string TopicCheck::without_topics(const Endpoint& other, const Device& device,
+                                       const std::string& rest) const {
+  const std::string_view end = other.publishes ? write_end : stamped_end(rest);
+  const Point* const point = find(*device.map, end.empty() ? std::string_view(rest) : before(end, rest));
+  if (point == nullptr) return {};
+  const auto is_of_point = [point](const auto& topic) { return topic.second.point == point; };
+  for (const Topics* topics : {&published_, &written_})
+    if (std::any_of(topics->begin(), topics->end(), is_of_point)) return {};
+  return fmt::format("{}: {} has no topics. Name it in the setting 'topics' of the driver",
+                     nobody_there(other), point->name);
 }
 
 /// At the name of the service for writes.

@@ -62,6 +62,7 @@ class TopicCheck {
   std::string foreign(const Endpoint& other) const;
   bool check_direction(const Endpoint& other, bool is_alone, std::vector<Finding>& findings) const;
   std::string misspelt(const Endpoint& other) const;
+  std::string without_topics(const Endpoint& other, const Device& device, const std::string& rest) const;
   std::string without_point(const Endpoint& other, const Device& device) const;
   std::string write_meant_by(const Device& device, const std::string& rest) const;
   std::string value_meant_by(const Device& device, const std::string& rest) const;

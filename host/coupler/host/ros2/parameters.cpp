@@ -120,7 +120,7 @@ ParameterServer::Value value_of(const SettingKey& key, const Settings& settings)
   if (!text) return value;
   value.type = type_of(key.kind);
   switch (key.kind) {
-    case SettingKey::Kind::list: value.string_array_value = settings.maps; break;
+    case SettingKey::Kind::list: value.string_array_value = items_of(*text); break;
     case SettingKey::Kind::integer: value.integer_value = std::strtoll(text->c_str(), nullptr, 10); break;
     case SettingKey::Kind::real: value.double_value = std::strtod(text->c_str(), nullptr); break;
     case SettingKey::Kind::text: value.string_value = *text; break;
