@@ -51,7 +51,7 @@ class Trajectories {
   /// Aborts all goals, also those to come.
   void end(const std::string& why);
 
-  /// What a goal is doing at a time.
+  /// The state of a goal at a time.
   struct Progress {
     GoalKey key;
     std::vector<std::size_t> joints;

@@ -40,7 +40,7 @@ bool TrajectoryMotion::has(std::size_t joint) const {
   return std::find(plan_.joints.begin(), plan_.joints.end(), joint) != plan_.joints.end();
 }
 
-/// Where there was no room for a change, there may have been for a later one of its joint.
+/// A later change of the joint may have found the room that this one lacked.
 Duration TrajectoryMotion::may_be_late(std::size_t change) const {
   if (changes_[change].lacked_room) return Duration::zero();
   return due(change) <= received_ + soon ? Duration(late_at_first) : Duration(late);

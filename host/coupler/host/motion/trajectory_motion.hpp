@@ -43,24 +43,23 @@ class TrajectoryMotion {
   /// The joints must outlive it. `now`: when the goal was received.
   TrajectoryMotion(TrajectoryPlan plan, const Joints& joints, Time start, Time now, Window window);
 
-  // What happens. Changes are indices into plan().changes.
+  // These calls report events. Changes are indices into plan().changes.
 
   /// The answer to a change of an axis that was handed over.
   void on_answer(std::size_t change, const ScheduleAnswer& answer);
-  /// What became of a scheduled write. Returns whether it is one of this trajectory.
+  /// Reports the outcome of a scheduled write. Returns whether it is one of this trajectory.
   bool on_outcome(const ScheduledOutcome& outcome);
-  /// What became of a change of a tool.
+  /// Reports the result of a change of a tool.
   void on_tool(std::size_t change, const ToolResult& result);
   /// Ends the goal: nothing is made any more that is due at `from` or later. A goal that was replaced goes on
   /// until then, and may still be ended for another reason; one that is over by then is not replaced. `why`
   /// says why; how many changes had been made is added.
   void end(How how, const std::string& why, Time from = Time::min(),
            TrajectoryCode code = TrajectoryCode::path_tolerance_violated);
-  /// What take_withdrawal() returned has been done, as far as it can be. What is in doubt still gets its
-  /// outcome.
+  /// Reports that the withdrawal has been made, as far as it can be. A write in doubt still gets its outcome.
   void on_withdrawn() { --withdrawals_; }
 
-  /// Where a joint is, as Joints::position() returns it.
+  /// Returns the position of a joint, as Joints::position() does.
   using Positions = std::function<std::optional<JointPosition>(std::size_t joint)>;
   /// Decides what time decides. Returns when to call it, and take_change(), again.
   Time step(Time now, const Positions& positions);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the joints of a device have to do for a trajectory, and when.
+// Plans the changes that the joints of a device make for a trajectory.
 #pragma once
 
 #include <chrono>

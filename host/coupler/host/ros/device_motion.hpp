@@ -32,7 +32,7 @@ std::string why_not_direct(const Map& map, const Point& point);
 /// before, whose thread is free then.
 class DeviceMotion final : public Follower, private Sink {
  public:
-  /// What it makes the device do. None of it may wait for anything.
+  /// The requests that it makes of the device. None of them may wait for anything.
   struct Calls {
     std::function<void(const Write&)> write;
     std::function<void(std::uint32_t point)> ask;  ///< reads a point soon whose changes the device announces
