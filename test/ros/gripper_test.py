@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The actions of tools, which MoveIt uses, by the action clients of ROS, and the positions of their joints."""
 import math
-import subprocess
 import time
 import unittest
 
@@ -9,21 +8,13 @@ from coupler_driver.msg import ToolState
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
-from support import process, testing
-from support.actions import ABORTED, CANCELED, IS_ROS2, REPLACED, SUCCEEDED, Client, topics_below
+from support import testing
+from support.actions import ABORTED, CANCELED, HAS_CONTROL_MSGS, IS_ROS2, REPLACED, SUCCEEDED, Client, topics_below
 from support.patience import wait_until
 from support.times import seconds
 from support.tools import CLOSE, CLOSED, OPEN, OPENED, PART, VACUUM, DeviceToolsTest
 
 JOINT = ", joint: fingers, positions: {open: 0.04, closed: 0.0}"
-
-
-def has_control_msgs():
-    version = subprocess.run([process.BUILD / "bin" / "coupler_driver", "--version"], capture_output=True, check=True, text=True).stdout
-    return "without control_msgs" not in version
-
-
-HAS_CONTROL_MSGS = has_control_msgs()
 
 
 class Gripper(Client):

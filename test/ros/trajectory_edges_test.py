@@ -16,12 +16,12 @@ import unittest
 from sensor_msgs.msg import JointState
 
 from support import process, testing
-from support.actions import SUCCEEDED
+from support.actions import HAS_CONTROL_MSGS, SUCCEEDED
 from support.patience import NO_TIMEOUT, QUIET, wait_until
 from support.ports import free_port
 from support.raw_client import Listener
 from support.relay import Relay
-from trajectory_test import SUCCESSFUL, Trajectory, has_control_msgs
+from trajectory_test import SUCCESSFUL, Trajectory
 
 MAP = """
 name: {name}
@@ -175,7 +175,7 @@ def milliseconds_of(text, word):
     return float(text.split(word)[1].rstrip(")")) if word in text else 0
 
 
-@unittest.skipUnless(has_control_msgs() and process.has_node(), "the driver was built without control_msgs, or no coupler-node")
+@unittest.skipUnless(HAS_CONTROL_MSGS and process.has_node(), "the driver was built without control_msgs, or no coupler-node")
 class TrajectoryEdges(testing.RosTest):
     def test_each_edge_comes_once_in_its_order_and_never_early(self):
         places = [Place(self, delay) for delay in DELAYS]

@@ -2,7 +2,6 @@
 """Trajectories, which MoveIt sends, by the action clients of ROS: at a device that the driver's timer serves, and at a node."""
 import math
 import signal
-import subprocess
 import time
 import unittest
 
@@ -12,7 +11,7 @@ from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
 from support import process, testing
-from support.actions import ABORTED, CANCELED, IS_ROS2, REPLACED, SUCCEEDED, Client
+from support.actions import ABORTED, CANCELED, HAS_CONTROL_MSGS, IS_ROS2, REPLACED, SUCCEEDED, Client
 from support.device import FAILURE, Device, Refuse
 from support.patience import NO_TIMEOUT, PATIENCE, wait_until
 from support.ports import free_port
@@ -40,11 +39,6 @@ GLUE, SPEED, CLOSE, OPEN, CLOSED, OPENED = 4, 2, 0, 1, 0, 1
 SUCCESSFUL, INVALID_GOAL, INVALID_JOINTS, OLD, PATH, GOAL = 0, -1, -2, -3, -4, -5
 SOON = 0.3  # seconds
 NEVER = 3000
-
-
-def has_control_msgs():
-    version = subprocess.run([process.BUILD / "bin" / "coupler_driver", "--version"], capture_output=True, check=True, text=True).stdout
-    return "without control_msgs" not in version
 
 
 class Trajectory(Client):
@@ -83,7 +77,7 @@ def ramp(*positions, step=SOON, between=50):
     return points
 
 
-@unittest.skipUnless(has_control_msgs(), "the driver was built without control_msgs")
+@unittest.skipUnless(HAS_CONTROL_MSGS, "the driver was built without control_msgs")
 class TrajectoryTest(testing.RosTest):
     at_once = True
 

@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Actions by the action client of either ROS: actionlib's or rclpy's."""
 import os
+import subprocess
 
+from support import process
 from support.patience import PATIENCE, wait_until
 from support.times import ros_duration, ros_time
 
 SUCCEEDED, ABORTED, CANCELED = "succeeded", "aborted", "canceled"
 IS_ROS2 = os.environ.get("ROS_VERSION") == "2"
 REPLACED = ABORTED if IS_ROS2 else CANCELED  # by a newer goal
+HAS_CONTROL_MSGS = "without control_msgs" not in subprocess.run([process.BUILD / "bin" / "coupler_driver", "--version"],
+                                                                capture_output=True, check=True, text=True).stdout
 
 # pylint: disable=import-outside-toplevel,import-error,no-name-in-module
 if IS_ROS2:

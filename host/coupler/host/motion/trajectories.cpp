@@ -8,7 +8,6 @@
 #include "coupler/host/core/wall_time.hpp"
 
 namespace coupler::host {
-
 namespace {
 
 using How = TrajectoryResult::How;

@@ -24,7 +24,7 @@ struct TrajectoryResult {
   };
   How how = How::aborted;
   TrajectoryCode code = TrajectoryCode::successful;
-  std::string text;  ///< "37 changes, latest 0.061 ms late"; or why it has ended
+  std::string text;  ///< "37 changes, at most 0.061 ms late (± 0.030)"; or why it has ended
 };
 
 /// How early changes are handed over, and how many at a time.
