@@ -9,11 +9,19 @@
 namespace coupler::host {
 
 Joints::Joints(const Map& map, const ValueTable& values, Tools& tools)
-    : map_(map), values_(values), tools_(tools) {
-  for (std::size_t i = 0; i < map_.tools.size(); ++i)
+    : map_(map), values_(values), tools_(tools), drives_(map.points.size()) {
+  const auto drives = [this](std::string_view output) {
+    if (const Point* point = coupler::find(map_, output))  // a tool may have one output only
+      drives_[static_cast<std::size_t>(point - map_.points.data())] = joints_.size();
+  };
+  for (std::size_t i = 0; i < map_.tools.size(); ++i) {
+    drives(map_.tools[i].close);
+    drives(map_.tools[i].open);
     joints_.push_back({joint_name(map_, map_.tools[i]), i, &map_.tools[i]});
+  }
   for (std::size_t i = 0; i < map_.axes.size(); ++i) {
     const Axis& axis = map_.axes[i];
+    drives(axis.point);
     const Point* point = coupler::find(map_, axis.point);  // the loader has checked that it is there
     joints_.push_back({joint_name(map_, axis), i, nullptr, &axis, point,
                        static_cast<std::uint32_t>(point - map_.points.data())});
@@ -32,16 +40,6 @@ std::vector<std::string_view> Joints::names() const {
   names.reserve(joints_.size());
   for (const Joint& joint : joints_) names.emplace_back(joint.name);
   return names;
-}
-
-std::optional<std::size_t> Joints::driven_by(std::uint32_t point) const {
-  const std::string_view name = map_.points[point].name;
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
-    const Tool* tool = joints_[i].tool;
-    if (tool == nullptr ? joints_[i].point_index == point : tool->close == name || tool->open == name)
-      return i;
-  }
-  return std::nullopt;
 }
 
 std::optional<JointPosition> Joints::position(std::size_t joint, Time now) const {

@@ -34,7 +34,7 @@ class Joints {
   std::optional<std::size_t> find(std::string_view name) const;
   std::vector<std::string_view> names() const;
   /// Returns the joint that the point drives: an axis, or a tool with that output; nothing if it drives none.
-  std::optional<std::size_t> driven_by(std::uint32_t point) const;
+  std::optional<std::size_t> driven_by(std::uint32_t point) const { return drives_[point]; }
 
   /// Any thread may call it. Returns nothing while the device is offline, or a point has no good value.
   std::optional<JointPosition> position(std::size_t joint, Time now) const;
@@ -44,6 +44,7 @@ class Joints {
   const ValueTable& values_;
   Tools& tools_;
   std::vector<Joint> joints_;
+  std::vector<std::optional<std::size_t>> drives_;  ///< by point
 };
 
 }  // namespace coupler::host
