@@ -6,9 +6,7 @@ Ten trajectories; COUPLER_LONG=yes: 500. It prints how late the edges were."""
 import contextlib
 import os
 import queue
-import random
 import socket
-import statistics
 import threading
 import time
 import unittest
@@ -19,6 +17,7 @@ from support import process, testing
 from support.actions import HAS_CONTROL_MSGS, SUCCEEDED
 from support.patience import NO_TIMEOUT, QUIET, wait_until
 from support.ports import free_port
+from support.random_trajectory import RandomTrajectories, described, lateness
 from support.raw_client import Listener
 from support.relay import Relay
 from trajectory_test import SUCCESSFUL, Trajectory
@@ -41,7 +40,6 @@ JOINTS = ["glue", "lamp"]
 DELAYS = [0, 0.001, 0.02, 0.1]  # seconds, each way
 TRAJECTORIES = 500 if os.environ.get("COUPLER_LONG") else 10
 AHEAD = 1.2  # seconds: a goal comes so long before its start
-BETWEEN = 50  # points
 INPUT = 2  # docs/time.md
 CLOCKS = 1e-4  # seconds: two programs tell the wall clock from the monotonic one
 
@@ -110,10 +108,9 @@ class Place:
         test.addCleanup(self.relay.stop)
         self.edges = Edges(self._node.port)
         self.map = process.write_map(MAP.format(name=self.name, timeout=NO_TIMEOUT) + f"port: {self.relay.port}\n")
-        self.levels = dict.fromkeys(JOINTS, 0)
         self.begin, self.wanted, self.late = None, [], []
         self._trajectory = None
-        self._random = random.Random(self.name)
+        self._random = RandomTrajectories(JOINTS, self.name)
 
     def connect(self, test):
         joints = test.topic(f"/{self.name}/joint_states", JointState)
@@ -122,46 +119,18 @@ class Place:
         self._trajectory = Trajectory(f"/{self.name}/follow_joint_trajectory")
 
     def send(self):
-        """Some stops, and straight lines between them."""
-        count, step = self._random.randint(2, 4), self._random.uniform(0.15, 0.4)
-        stops = [[self._level() for _ in JOINTS] for _ in range(count)]
-        points = [(0.0, *stops[0])]
-        for number, (start, end) in enumerate(zip(stops, stops[1:])):
-            for i in range(1, BETWEEN + 1):
-                points.append((step * (number + i / BETWEEN), *(a + (b - a) * i / BETWEEN for a, b in zip(start, end))))
+        points, edges = self._random.next()
         self.begin = time.monotonic() + AHEAD
-        self.wanted = self._edges(stops, step)
+        self.wanted = [(joint, level, self.begin + at) for joint, level, at in edges]
         return self._trajectory.send(points, JOINTS, start=wall_time_of(self.begin))
-
-    def _level(self):
-        level = self._random.random()
-        return level if abs(level - 0.5) > 0.05 else 1.0
-
-    def _edges(self, stops, step):
-        """Where the lines cross the middle: (joint, level, time)."""
-        edges = []
-        for joint, positions in zip(JOINTS, zip(*stops)):
-            crossings = [(0, positions[0])]
-            for number, (a, b) in enumerate(zip(positions, positions[1:])):
-                crossings.append((step * (number + (0.5 - a) / (b - a if a != b else 1)), b))
-            for at, position in crossings:
-                level = int(position > 0.5)
-                if level != self.levels[joint]:
-                    edges.append((joint, level, at))
-                self.levels[joint] = level
-        return sorted(edges, key=lambda edge: edge[2])
 
     def check(self, test, tolerance):
         """What was seen since the last call."""
         wait_until(lambda: len(self.edges.seen) >= len(self.wanted), f"{len(self.wanted)} edges: {self.edges.seen}")
         seen, self.edges.seen = self.edges.seen, []
-        for joint in JOINTS:
-            test.assertEqual([level for name, level, _ in seen if name == joint],
-                             [level for name, level, _ in self.wanted if name == joint], f"{joint}, each once and in order: {self.wanted}")
-            for (*_, at), (*_, due) in zip(*([edge for edge in edges if edge[0] == joint] for edges in (seen, self.wanted))):
-                late = at - self.begin - due
-                test.assertGreaterEqual(late, -tolerance, f"{joint} at {due}: never early")
-                self.late.append(late)
+        late = lateness(JOINTS, seen, self.wanted)
+        test.assertGreaterEqual(min(late, default=0), -tolerance, f"never early: {seen}, wanted {self.wanted}")
+        self.late += late
 
 
 def wall_time_of(monotonic):
@@ -191,9 +160,7 @@ class TrajectoryEdges(testing.RosTest):
         time.sleep(QUIET)
         for place in places:
             self.assertEqual((place.edges.seen, place.edges.lost), ([], 0), "no edge comes twice")
-            late = sorted(place.late)
-            print(f"{1000 * place.delay:g} ms each way: {len(late)} edges, late by (ms): "
-                  f"least {1000 * late[0]:.3f}, median {1000 * statistics.median(late):.3f}, p99 {1000 * late[int(0.99 * len(late))]:.3f}, max {1000 * late[-1]:.3f}")
+            print(f"{1000 * place.delay:g} ms each way: {len(place.late)} edges, late by (ms): {described(place.late)}")
 
 
 if __name__ == "__main__":
