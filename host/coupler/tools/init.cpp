@@ -45,6 +45,7 @@ constexpr std::string_view board_points = R"(mapping:
     presses: {address: 0, type: UDINT, counter: {of: button, edge: rising}}   # counts between reads, too
   holding_registers:
     setpoint: {address: 0, type: REAL, units: bar}   # plain memory: keeps what a client wrote
+    recipe: {address: 2, type: STRING, length: 16, order: AB}   # AB: other clients read its letters in sequence
 )";
 
 constexpr std::string_view board_head = R"(
@@ -152,7 +153,13 @@ std::string starter_map(const Starter& starter) {
   };
   text += fmt::format("name: {}\n", starter.name);
   if (is_modicon) text += explained("addressing: modicon", "addresses are the numbers of manuals: 40001 ...");
-  if (starter.node) return text + std::string(board_head) + numbered(board_points);
+  if (starter.node) {
+    text +=
+        explained("port: 1502", "502, the standard port, needs a privilege; the package's service has it");
+    text += explained("wordorder_reverse: true",
+                      "wide values stand as `order: ABCD`, which most Modbus clients expect");
+    return text + std::string(board_head) + numbered(board_points);
+  }
   if (has_address)
     text += fmt::format("address: {}\n", starter.address.empty() ? "192.168.1.17" : starter.address);
   else
