@@ -109,7 +109,7 @@ def talk(port, first):
 
 def shown(port, file, script):
     """By transaction id: what the request shows, what the reply shows."""
-    done = tshark_test.read(port, file, *tshark_test.with_dissector(port, script), "-V")
+    done = tshark_test.read(file, *tshark_test.with_dissector(port, script), "-V")
     messages, points = {}, None
     for line in done.stdout.splitlines():
         text = line.strip()

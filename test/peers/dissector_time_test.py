@@ -137,7 +137,7 @@ def talk(port):
 
 def shown(port, file, script):
     """By transaction id: what the request shows, what the reply shows; and what tshark complains of."""
-    done = tshark_test.read(port, file, *tshark_test.with_dissector(port, script), "-V")
+    done = tshark_test.read(file, *tshark_test.with_dissector(port, script), "-V")
     messages, lines, is_request = {}, None, False
     for line in done.stdout.splitlines():
         if line.startswith("Transmission Control Protocol"):
@@ -156,7 +156,7 @@ def shown(port, file, script):
 
 def found(port, file, script, condition):
     """The information columns, behind what Wireshark itself says."""
-    done = tshark_test.read(port, file, *tshark_test.with_dissector(port, script),
+    done = tshark_test.read(file, *tshark_test.with_dissector(port, script),
                             "-Y", re.sub(r"\b([a-z_]+) (?=[=>])", r"coupler_cell_north.\1 ", condition),
                             "-T", "fields", "-e", "_ws.col.Info")
     return [line.partition(" | ")[2] for line in done.stdout.splitlines()]

@@ -83,8 +83,8 @@ def capture(port, file, traffic, checks):
             tshark.kill()
 
 
-def read(port, file, *options):
-    return subprocess.run(["tshark", "-r", str(file), "-o", f"mbtcp.tcp.port:{port}", *options],
+def read(file, *options):
+    return subprocess.run(["tshark", "-r", str(file), *options],
                           capture_output=True, text=True, encoding="utf-8", check=True)
 
 
@@ -94,7 +94,7 @@ def with_dissector(port, script):
 
 
 def dissect(port, file, *options):
-    return [line for line in read(port, file, *options).stdout.splitlines() if line.strip()]
+    return [line for line in read(file, "-o", f"mbtcp.tcp.port:{port}", *options).stdout.splitlines() if line.strip()]
 
 
 def main():

@@ -47,6 +47,15 @@ Exit run(const Arguments& arguments) {
   const MapArgument argument = get_map(arguments.map, arguments.tls);
   print(argument.loaded.diagnostics);
   if (!argument.loaded.map) return argument.exit;
+  if (exporter->is_for_client && !formats::lets_read_without_tls(argument.map()))
+    return complain(
+        "export", bad_input,
+        fmt::format(
+            "'security' lets no client without TLS read anything, and '{}' is for a program that has no "
+            "TLS",
+            exporter->name),
+        "give such clients a role that may read, as in `security: {roles: {viewer: {read: all}}, plain: "
+        "viewer}`");
   const formats::Export exported = arguments.node_statistics ? exporter->write_with_statistics(argument.map())
                                                              : exporter->write(argument.map());
   print(exported.warnings.diagnostics(arguments.map));

@@ -165,6 +165,19 @@ class Export(Cli):
         self.assertIn(f"./{name} is the map itself; name another file with --out", done.stderr)
         self.assertIn("MAP and --to FORMAT are required", self.coupler("export", name).stderr)
 
+    def test_refuses_a_program_without_tls_where_it_could_read_nothing(self):
+        def secured(plain):
+            return self.file(f"{plain}.yaml", "name: cell\nsecurity: {roles: {viewer: {read: all}, maker: {write: all}}, plain: " + plain +
+                             "}\nmapping: {coils: {lamp: 0}}\n")
+        for kind in ("telegraf", "home-assistant", "st"):
+            done = self.coupler("export", secured("none"), "--to", kind)
+            self.assertEqual((done.returncode, done.stdout), (1, ""))
+            self.assertIn(f"'security' lets no client without TLS read anything, and '{kind}' is for a program that has no TLS; "
+                          "give such clients a role that may read", done.stderr)
+            self.assertEqual(self.coupler("export", secured("viewer"), "--to", kind).returncode, 0)
+        for kind in ("csv", "wireshark"):
+            self.assertEqual(self.coupler("export", secured("none"), "--to", kind).returncode, 0)
+
     def test_adds_a_nodes_statistics_where_the_format_has_a_place_for_them(self):
         name = self.file("cell.yaml", MAP)
         self.assertIn('measurement = "cell_node"', self.coupler("export", name, "--to", "telegraf", "--node-statistics").stdout)

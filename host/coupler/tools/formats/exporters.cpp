@@ -13,13 +13,13 @@ namespace coupler::formats {
 namespace {
 
 constexpr Exporter formats[] = {
-    {"csv", "a table of points, for spreadsheets and for `coupler import csv`", write_csv},
-    {"home-assistant", "the modbus integration's part of configuration.yaml", write_home_assistant},
+    {"csv", "a table of points, for spreadsheets and for `coupler import csv`", write_csv, false},
+    {"home-assistant", "the modbus integration's part of configuration.yaml", write_home_assistant, true},
     {"st", "types, variables and function blocks in Structured Text, for a PLC that reads the device",
-     write_structured_text},
-    {"telegraf", "a section [[inputs.modbus]] of telegraf.conf", write_telegraf,
+     write_structured_text, true},
+    {"telegraf", "a section [[inputs.modbus]] of telegraf.conf", write_telegraf, true,
      write_telegraf_with_statistics},
-    {"wireshark", "a dissector (Lua) that names the points in captures", write_wireshark},
+    {"wireshark", "a dissector (Lua) that names the points in captures", write_wireshark, false},
 };
 
 std::string list_of(const std::vector<std::string>& points) {
@@ -78,6 +78,15 @@ const Exporter* find_exporter(std::string_view name) {
   const auto* found = std::find_if(std::begin(formats), std::end(formats),
                                    [name](const Exporter& exporter) { return exporter.name == name; });
   return found == std::end(formats) ? nullptr : found;
+}
+
+bool lets_read_without_tls(const Map& map) {
+  if (!map.security.present()) return true;
+  if (!map.security.plain) return false;
+  const Role& role = map.security.roles[*map.security.plain];
+  for (std::size_t i = 0; i < map.points.size(); ++i)
+    if (role.may(Right::read, i)) return true;
+  return false;
 }
 
 void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings) {

@@ -44,6 +44,7 @@ struct Exporter {
   std::string_view name;  ///< at the command line
   std::string_view summary;
   Export (*write)(const Map& map);  ///< the same text for the same map
+  bool is_for_client;               ///< for a program that asks the device, without TLS
   Export (*write_with_statistics)(const Map& map) =
       nullptr;  ///< and of the node's statistics, if it has them
 };
@@ -88,6 +89,9 @@ const Exporter* find_exporter(std::string_view name);
 /// Warns of what only a node or this project's driver uses: other programs that read a device have no word
 /// for it.
 void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings);
+
+/// Returns whether a client without TLS may read some point of the map.
+bool lets_read_without_tls(const Map& map);
 
 /// Warns that a program that writes the device has no tools, which never have both outputs on.
 void warn_of_tools(const Map& map, ConversionWarnings& warnings);

@@ -2,10 +2,10 @@
 #include "coupler/tools/formats/exporters.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,8 +13,8 @@
 
 #include <fmt/format.h>
 
-#include "coupler/codec/number.hpp"
 #include "coupler/map/loader/scalar.hpp"
+#include "coupler/tools/formats/home_assistant_sensor.hpp"
 #include "coupler/tools/formats/map_tree.hpp"
 
 namespace coupler::formats {
@@ -23,7 +23,6 @@ namespace {
 using codec::Type;
 
 constexpr int shortest_interval = 5;  // seconds; below it Home Assistant warns
-constexpr int float_decimals = 6;
 
 std::string text(std::string_view value) { return flow(scalar("", std::string(value), {}, true)); }
 
@@ -40,24 +39,6 @@ int interval_of(const Map& map, const Point& point) {
   return std::max(shortest_interval, static_cast<int>(std::ceil(1 / rate)));
 }
 
-std::string_view data_type_of(Type type) {
-  switch (type) {
-    case Type::INT: return "int16";
-    case Type::WORD:
-    case Type::UINT: return "uint16";
-    case Type::DINT: return "int32";
-    case Type::DWORD:
-    case Type::UDINT: return "uint32";
-    case Type::LINT: return "int64";
-    case Type::LWORD:
-    case Type::ULINT: return "uint64";
-    case Type::REAL: return "float32";
-    case Type::LREAL: return "float64";
-    case Type::STRING: return "string";
-    default: return "custom";  // bytes
-  }
-}
-
 /// Returns the type that the file has for a type that Home Assistant only has as a number.
 std::string_view read_back_as(Type type) {
   switch (type) {
@@ -68,66 +49,6 @@ std::string_view read_back_as(Type type) {
     case Type::CHAR: return "USINT";
     default: return "";
   }
-}
-
-std::string_view swap_of(const codec::Format& format) {
-  const bool bytes = codec::bytes_swapped(format.order);
-  if (codec::words_reversed(format.order)) return bytes ? "word_byte" : "word";
-  return bytes ? "byte" : "";
-}
-
-/// Decimals of the shortest text of the number: 0.25 has two.
-int decimals_of(double number) {
-  const std::string shown = fmt::format("{}", number);
-  const std::size_t exponent = shown.find("e-");
-  const std::size_t point = shown.find('.');
-  const std::size_t digits_end = std::min(exponent, shown.size());
-  int decimals = point == std::string::npos ? 0 : static_cast<int>(digits_end - point - 1);
-  if (exponent != std::string::npos) decimals += std::stoi(shown.substr(exponent + 2));
-  return std::min(decimals, 15);
-}
-
-/// The keys that say how the registers are read, one a line behind `indent`.
-std::string format_keys(const Point& point, std::string_view indent) {
-  const codec::Format& format = point.format;
-  std::string keys = fmt::format("{}data_type: {}\n", indent, data_type_of(format.type));
-  if (codec::width(format.type) == 8) {
-    // The byte as it stands on the wire, so nothing is to be swapped.
-    const char letter = format.type == Type::SINT ? 'b' : 'B';
-    keys += fmt::format(
-        "{}count: 1\n{}structure: \"{}\"\n", indent, indent,
-        codec::mask(format) == 0xFF00 ? fmt::format(">{}x", letter) : fmt::format(">x{}", letter));
-    return keys + (point.scale.present()
-                       ? fmt::format("{}precision: {}\n", indent,
-                                     std::max(decimals_of(point.scale.gain), decimals_of(point.scale.offset)))
-                       : fmt::format("{}precision: 0\n", indent));
-  }
-  if (format.type == Type::STRING) keys += fmt::format("{}count: {}\n", indent, codec::registers(format));
-  if (const std::string_view swap = swap_of(format); !swap.empty())
-    keys += fmt::format("{}swap: {}\n", indent, swap);
-  if (is_float(format.type))
-    keys += fmt::format("{}precision: {}\n", indent, float_decimals);
-  else if (point.scale.present())
-    keys += fmt::format("{}precision: {}\n", indent,
-                        std::max(decimals_of(point.scale.gain), decimals_of(point.scale.offset)));
-  return keys;
-}
-
-/// Home Assistant compares one number, and its negative, with the raw value of a whole number: the negative
-/// may be no value of the type.
-std::optional<std::int64_t> nan_value_of(const Point& point) {
-  const Type type = point.format.type;
-  const bool is_one = point.invalid.size() == 1 && point.invalid[0].first == point.invalid[0].last;
-  if (!is_one || !codec::is_scalable(type) || is_float(type)) return std::nullopt;
-  return codec::with_number(type, [&](auto zero) -> std::optional<std::int64_t> {
-    using T = decltype(zero);
-    const T none = static_cast<T>(point.invalid[0].first);
-    if constexpr (std::is_same_v<T, std::uint64_t>)
-      return std::nullopt;
-    else if (std::is_unsigned_v<T> || none == std::numeric_limits<T>::lowest() || none == 0)
-      return static_cast<std::int64_t>(none);
-    return std::nullopt;
-  });
 }
 
 /// Lists of entities, by what Home Assistant calls them.
@@ -188,12 +109,15 @@ class EntityWriter {
   static std::string name_of(const Point& point, std::uint16_t element) {
     return point.count > 1 ? fmt::format("{} {}", point.name, element) : std::string(point.name);
   }
+  /// Returns the name that Home Assistant shows, and makes the entity's id of. Devices have points of the
+  /// same name.
+  std::string shown(const std::string& name) const { return fmt::format("{} {}", map_.name, name); }
 
   std::string head(const Point& point, std::uint16_t element, modbus::Range place) {
     const std::string name = name_of(point, element);
     const unsigned address = place.start() + static_cast<unsigned>(element) * codec::registers(point.format);
     return fmt::format("      - name: {}\n{}unique_id: {}\n{}slave: {}\n{}address: {}\n{}scan_interval: {}\n",
-                       text(name), indent, ids_.make(unique_id(map_, name), point.name), indent,
+                       text(shown(name)), indent, ids_.make(unique_id(map_, name), point.name), indent,
                        map_.connection.unit, indent, address, indent, interval_of(map_, point));
   }
 
@@ -239,17 +163,17 @@ class EntityWriter {
     if (!point.units.empty()) out += fmt::format("{}unit_of_measurement: {}\n", indent, text(point.units));
     // Each sensor gets its id in the order of the file, because Home Assistant numbers sensors with equal
     // names in that order.
-    const std::string id = sensor_ids_.make(entity_id(name_of(point, element)), point.name);
+    const std::string id = sensor_ids_.make(entity_id(shown(name_of(point, element))), point.name);
     if (!point.values.empty()) add_template(name_of(point, element), id, point);
   }
 
   void add_template(const std::string& sensor, const std::string& id, const Point& point) {
     const std::string name = sensor + " name";
-    template_ids_.emplace_back(entity_id(name), point.name);
-    entities_.templates += fmt::format("      - name: {}\n{}unique_id: {}\n{}state: {}\n{}availability: {}\n",
-                                       text(name), indent, ids_.make(unique_id(map_, name), point.name),
-                                       indent, text(state_template(point, id)), indent,
-                                       text(fmt::format("{{{{ has_value('{}') }}}}", id)));
+    template_ids_.emplace_back(entity_id(shown(name)), point.name);
+    entities_.templates += fmt::format(
+        "      - name: {}\n{}unique_id: {}\n{}state: {}\n{}availability: {}\n", text(shown(name)), indent,
+        ids_.make(unique_id(map_, name), point.name), indent, text(state_template(point, id)), indent,
+        text(fmt::format("{{{{ has_value('{}') }}}}", id)));
   }
 
   void add_warnings(const Point& point) {
@@ -317,6 +241,29 @@ std::string hub_of(const Map& map) {
   return hub;
 }
 
+/// Warns that outputs that Home Assistant has switched on would go off again.
+void warn_of_watchdog(const Map& map, ConversionWarnings& warnings) {
+  if (!map.service.watchdog.present()) return;
+  if (map.service.watchdog.fed_by == Watchdog::FedBy::write)
+    return warnings.add(
+        "Home Assistant does not repeat a command, so the node's watchdog with 'fed_by: write' takes each "
+        "output to its safe state soon after it was switched",
+        "remove 'fed_by: write' from the node's map, or repeat the command by an automation");
+  int interval = std::numeric_limits<int>::max();
+  for (const Point& point : map.points)
+    if (is_readable(point)) interval = std::min(interval, interval_of(map, point));
+  if (interval == std::numeric_limits<int>::max())
+    return warnings.add("Home Assistant has nothing to read, so the node's watchdog is not fed",
+                        "add a point that can be read to the map");
+  const auto longest = std::chrono::seconds(interval);
+  if (map.service.watchdog.timeout > 2 * longest) return;
+  warnings.add(
+      fmt::format("Home Assistant asks every {} s, and the node's watchdog takes the outputs that it has "
+                  "switched to their safe state after {} s without a request",
+                  interval, std::chrono::duration<double>(map.service.watchdog.timeout).count()),
+      fmt::format("write 'watchdog: {{timeout: {}s}}' into the node's map", 3 * interval));
+}
+
 }  // namespace
 
 Export write_home_assistant(const Map& map) {
@@ -329,6 +276,7 @@ Export write_home_assistant(const Map& map) {
                      "use an adapter that does it by itself");
   const Entities entities = EntityWriter(map, out.warnings).write();
   warn_of_node_and_driver_keys(map, out.warnings);
+  if (!entities.switches.empty()) warn_of_watchdog(map, out.warnings);
   warn_of_tools(map, out.warnings);
   out.text = "# Made by `coupler export --to home-assistant`.\n" + hub_of(map);
   if (!entities.binary_sensors.empty()) out.text += "    binary_sensors:\n" + entities.binary_sensors;

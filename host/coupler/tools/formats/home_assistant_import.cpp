@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/starts_with.hpp"
 #include "coupler/map/loader/scalar.hpp"
 #include "coupler/tools/formats/foreign_connection.hpp"
 #include "coupler/tools/formats/home_assistant_points.hpp"
@@ -193,6 +194,27 @@ void check_included_hubs(const HomeAssistantFile& file, Problems& problems) {
   take_tags_out(places, file.tags, problems);
 }
 
+/// Takes the hub's name off the names of its entities, if all of them begin with it, as an export has them.
+void shorten_names(Entry& hub) {
+  const std::string prefix = name_of(hub) + " ";
+  std::vector<Entry*> names;
+  for (Entry& platform : hub.children) {
+    if (std::none_of(entity_platforms().begin(), entity_platforms().end(),
+                     [&](std::string_view each) { return each == platform.key; }))
+      continue;
+    const bool is_list = platform.kind == Entry::Kind::list;
+    for (Entry* entity = is_list ? platform.children.data() : &platform;
+         entity != (is_list ? platform.children.data() + platform.children.size() : &platform + 1); ++entity)
+      for (Entry& key : entity->children)
+        if (key.key == "name") names.push_back(&key);
+  }
+  const auto begins = [&](const Entry* name) {
+    return name->text.size() > prefix.size() && starts_with(name->text, prefix);
+  };
+  if (!std::all_of(names.begin(), names.end(), begins)) return;
+  for (Entry* name : names) name->text.erase(0, prefix.size());
+}
+
 std::vector<ForeignUnit> read_hub(const Entry& hub, Problems& problems) {
   const SecretUnit secret = find_secret_unit(hub, problems);
   if (!secret.is_only_one) return {};
@@ -245,6 +267,7 @@ std::vector<ForeignUnit> read_home_assistant(std::string_view text, const Import
   if (chosen == nullptr) return {};
   Entry hub = *chosen;
   take_tags_out(hub, file->tags, problems);
+  shorten_names(hub);
   return read_hub(hub, problems);
 }
 

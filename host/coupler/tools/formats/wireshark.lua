@@ -6,16 +6,16 @@ local function connection(client, client_port, server, server_port)
   return tostring(client) .. ":" .. client_port .. ">" .. tostring(server) .. ":" .. server_port
 end
 
-local function dissect_one(tvb, pinfo, tree)
-  -- A capture may end each packet early. Wireshark's dissector then gives up in a way that does not come back through Lua.
-  if tvb:len() < tvb:reported_len() then
-    Dissector.get("data"):call(tvb, pinfo, tree)
-    return tvb:len()
-  end
+-- Wireshark's own dissector tells requests from replies by the port in its own settings, 502 at first.
+local function dissect_modbus(tvb, pinfo, tree)
+  local server_port = pinfo.dst_port == pinfo.match and "dst_port" or "src_port"
+  local port = pinfo[server_port]
+  pinfo[server_port] = 502
   Dissector.get("mbtcp"):call(tvb, pinfo, tree)
-  if tvb:len() < 9 then return tvb:len() end
-  local unit = tvb(6, 1):uint()
-  if unit ~= map.unit and unit ~= 0 and unit ~= 255 then return tvb:len() end
+  pinfo[server_port] = port
+end
+
+local function dissect_points(tvb, pinfo, tree)
   local transaction = tvb(0, 2):uint()
   if pinfo.dst_port == pinfo.match then
     local request = request_of(tvb)
@@ -41,6 +41,61 @@ local function dissect_one(tvb, pinfo, tree)
   return tvb:len()
 end
 
+-- The maps -------------------------------------------------------------------------------------------------------------
+
+-- All that Wireshark has loaded, each from a script of its own: it keeps one dissector for a port, which serves them all.
+local maps = package.loaded.coupler_maps or {}
+package.loaded.coupler_maps = maps
+local this = { name = map.name, protocol = map.proto, unit = map.unit, prefs = proto.prefs, dissect = dissect_points }
+table.insert(maps, this)
+
+local function chosen(from, condition)
+  local found = {}
+  for _, each in ipairs(from) do
+    if condition(each) then table.insert(found, each) end
+  end
+  return found
+end
+
+local function address_of(text)
+  local known, address = pcall(text:find(":", 1, true) and Address.ipv6 or Address.ip, text)
+  return known and address or nil
+end
+
+-- Those that a message may be about: one, if their ports, addresses and units tell them apart.
+local function maps_of(server, port, unit)
+  local here = chosen(maps, function(each) return each.prefs.port == port end)
+  if #here == 0 then here = { this } end -- "Decode As"
+  here = chosen(here, function(each) return each.unit == unit or unit == 0 or unit == 255 end)
+  if #here < 2 then return here end
+  local there = chosen(here, function(each) return each.prefs.address ~= "" and address_of(each.prefs.address) == server end)
+  if #there == 0 then there = chosen(here, function(each) return each.prefs.address == "" end) end
+  return there
+end
+
+local function dissect_one(tvb, pinfo, tree)
+  -- A capture may end each packet early. Wireshark's dissector then gives up in a way that does not come back through Lua.
+  if tvb:len() < tvb:reported_len() then
+    Dissector.get("data"):call(tvb, pinfo, tree)
+    return tvb:len()
+  end
+  dissect_modbus(tvb, pinfo, tree)
+  if tvb:len() < 9 then return tvb:len() end
+  local server = pinfo.dst_port == pinfo.match and pinfo.dst or pinfo.src
+  local found = maps_of(server, pinfo.match, tvb(6, 1):uint())
+  if #found == 1 then return found[1].dissect(tvb, pinfo, tree) end
+  if #found > 1 then
+    local names, options = {}, {}
+    for _, each in ipairs(found) do
+      table.insert(names, each.name)
+      table.insert(options, "-o " .. each.protocol .. ".address:ADDRESS")
+    end
+    tree:add(proto, tvb()):set_text("several maps are loaded for this port: " .. table.concat(names, ", ") ..
+      ". Say where their devices are: " .. table.concat(options, " "))
+  end
+  return tvb:len()
+end
+
 local function length_of(tvb, _, offset) return 6 + tvb(offset + 4, 2):uint() end
 
 function proto.dissector(tvb, pinfo, tree)
@@ -48,14 +103,23 @@ function proto.dissector(tvb, pinfo, tree)
   return tvb:len()
 end
 
-local registered
 local ports = DissectorTable.get("tcp.port")
 ports:add_for_decode_as(proto)
+
+function this.leave_port()
+  if this.port then ports:remove(this.port, proto) end
+end
+
+function this.take_port()
+  this.port = proto.prefs.port
+  ports:add(this.port, proto)
+end
+
+-- One that leaves its port takes it from the others, too.
 local function register()
-  if registered == proto.prefs.port then return end
-  if registered then ports:remove(registered, proto) end
-  registered = proto.prefs.port
-  ports:add(registered, proto)
+  if this.port == proto.prefs.port then return end
+  this.leave_port()
+  for _, each in ipairs(maps) do each.take_port() end
 end
 
 function proto.prefs_changed() register() end

@@ -5,6 +5,7 @@
 
 #include "coupler/codec/text.hpp"
 #include "coupler/map/loader/scalar.hpp"
+#include "coupler/map/network.hpp"
 
 namespace coupler::formats {
 
@@ -67,23 +68,22 @@ Export write_wireshark(const Map& map) {
       "--   tshark -X lua_script:FILE -r capture.pcapng -V\n"
       "-- or copy it into the folder for plugins (Help, About Wireshark, Folders). The device listens on "
       "port {1};\n"
-      "-- another one: -o {2}.port:N -o mbtcp.tcp.port:N. Filters: {2}.point == \"NAME\", {2}.value == "
-      "\"…\",\n"
-      "-- of a node's function codes 65 and 66 {2}.longest_wait, epoch, seen, newest, lost, number,\n"
-      "-- duration, outcome.\n\n"
+      "-- another one: -o {2}.port:N. If several maps have one port, where the device is: -o "
+      "{2}.address:IP.\n"
+      "-- Filters: {2}.point == \"NAME\", {2}.value == \"…\", of a node's function codes 65 and 66\n"
+      "-- {2}.longest_wait, epoch, seen, newest, lost, number, duration, outcome.\n\n"
       "local map = {{\n"
-      "  name = {3}, proto = \"{2}\", unit = {4}, port = {1},\n"
+      "  name = {3}, proto = \"{2}\", unit = {4}, port = {1}, address = {5},\n"
       "  points = {{\n",
-      map.name, map.connection.port, proto, lua_literal(map.name), map.connection.unit);
+      map.name, map.connection.port, proto, lua_literal(map.name), map.connection.unit,
+      lua_literal(is_ip_address(map.connection.address) ? map.connection.address : ""));
   for (const Point& point : map.points) out.text += row_of(point);
   out.text += "  },\n}\n\n";
   out.text += wireshark_body();
   if (map.connection.is_rtu())
     out.warnings.add(
         "the dissector is for captures of Modbus/TCP, and the coupler speaks RTU",
-        fmt::format(
-            "capture at a gateway that translates, and give its port: -o {0}.port:N -o mbtcp.tcp.port:N",
-            proto));
+        fmt::format("capture at a gateway that translates, and give its port: -o {}.port:N", proto));
   for (const Point& point : map.points) warn_of_raw_meaning(point, false, out.warnings);
   warn_of_node_and_driver_keys(map, out.warnings);
   return out;

@@ -16,6 +16,8 @@ local fields = {
 }
 proto.fields = fields
 proto.prefs.port = Pref.uint("TCP port", map.port, "Where the device listens")
+proto.prefs.address = Pref.string("IP address", map.address,
+  "Where the device is; it counts if several maps have the same port")
 
 -- Which points cover an address, by table, for reads and for writes. ------------------------------------------------
 

@@ -188,6 +188,13 @@ HA_TYPES = {"int16": ("h", 1), "uint16": ("H", 1), "int32": ("i", 2), "uint32": 
 ENTITY = {"name", "unique_id", "slave", "address", "scan_interval"}
 
 
+def short(entity, hub):
+    """The name without that of the hub, with which it begins."""
+    begin, name = entity["name"][:len(hub["name"]) + 1], entity["name"][len(hub["name"]) + 1:]
+    assert begin == hub["name"] + " ", entity
+    return name
+
+
 class HomeAssistant(unittest.TestCase):
     def hub(self, file):
         hubs = yaml.safe_load(exported(file, "home-assistant"))["modbus"]
@@ -257,7 +264,8 @@ class HomeAssistant(unittest.TestCase):
 
     def test_reads_every_type_in_every_order(self):
         banks = {"input": memory(INPUTS), "holding": memory(HOLDINGS)}
-        values = {s["name"]: self.value(s, banks[s["input_type"]]) for s in self.hub(MAP)["sensors"]}
+        hub = self.hub(MAP)
+        values = {short(s, hub): self.value(s, banks[s["input_type"]]) for s in hub["sensors"]}
         expected = {name: str(value) for name, value in RAW.items() if name != "level"}
         self.assertEqual(values, expected | {"level": "21.5", "abcd": "3.140000", "cdab": "-0.100000", "long_badc": "1.250000",
                                              "pair 0": "1.5", "pair 1": "-2.0", "pair 2": "2.5", "label": "Anlage",
@@ -266,14 +274,14 @@ class HomeAssistant(unittest.TestCase):
     def test_names_values_in_template_sensors(self):
         """docs: source/_integrations/template.markdown; an entity's id is the slug of its name (homeassistant.util.slugify)."""
         config = self.config("Arm/Mode: {address: 0, type: INT, values: {-1: fault, 2: run}}")
-        self.assertEqual(config["modbus"][0]["sensors"][0]["name"], "Arm/Mode")
+        self.assertEqual(config["modbus"][0]["sensors"][0]["name"], "m Arm/Mode")
         [[sensor]] = [part["sensor"] for part in config["template"]]
         self.assertEqual({key: sensor[key] for key in ("name", "unique_id", "availability")},
-                         {"name": "Arm/Mode name", "unique_id": "m_arm_mode_name",
-                          "availability": "{{ has_value('sensor.arm_mode') }}"})
+                         {"name": "m Arm/Mode name", "unique_id": "m_arm_mode_name",
+                          "availability": "{{ has_value('sensor.m_arm_mode') }}"})
         expression = re.fullmatch(r"\{\{ (.*) \}\}", sensor["state"])[1]  # Jinja's are Python's here
         for state, shown in (("-1", "fault"), ("2", "run"), ("7", "7")):
-            states = {"sensor.arm_mode": state}.__getitem__
+            states = {"sensor.m_arm_mode": state}.__getitem__
             self.assertEqual(eval(expression, {"states": states}), shown)  # pylint: disable=eval-used
 
     def test_a_template_reads_the_register_of_its_own_point(self):
@@ -287,13 +295,13 @@ class HomeAssistant(unittest.TestCase):
             states[next(each for each in (slug, slug + "_2") if each not in states)] = str(sensor["address"])
         for template in config["template"][0]["sensor"]:
             shown = eval(template["state"][3:-3], {"states": states.__getitem__})  # pylint: disable=eval-used
-            self.assertEqual(shown, f"v{names.index(template['name'].removesuffix(' name'))}")
+            self.assertEqual(shown, f"v{names.index(template['name'][len('m '):-len(' name')])}")
 
     def test_switches_coils_and_reads_them_back(self):
         hub = self.hub(MAP)
-        self.assertEqual([s["name"] for s in hub["switches"]], ["lamp", "gate"] + [f"row {i}" for i in range(10)])
+        self.assertEqual([short(s, hub) for s in hub["switches"]], ["lamp", "gate"] + [f"row {i}" for i in range(10)])
         self.assertEqual(hub["switches"][3]["verify"], {"input_type": "coil", "address": 9, "state_on": 1, "state_off": 0})
-        self.assertEqual([s["name"] for s in hub["binary_sensors"]], ["button", "door"])
+        self.assertEqual([short(s, hub) for s in hub["binary_sensors"]], ["button", "door"])
 
 
 if __name__ == "__main__":

@@ -130,6 +130,31 @@ TEST(HomeAssistantExport, What_it_cannot_say_is_told_with_the_points) {
             HasSubstr("which cannot be written: low, bit, r;")));
 }
 
+TEST(HomeAssistantExport, A_watchdog_that_its_polls_do_not_feed_is_told) {
+  const auto said = [](const std::string& watchdog, const std::string& more = "") {
+    const LoadResult loaded = load_map(
+        "{name: m, watchdog: " + watchdog + ", mapping: {coils: {lamp: {address: 0" + more + "}}}}", "m");
+    EXPECT_NE(loaded.map, nullptr) << lines_of(loaded.diagnostics);
+    return lines_of(formats::write_home_assistant(loaded.map->map()).warnings.diagnostics("m"));
+  };
+  EXPECT_THAT(
+      said("{timeout: 500ms}"),
+      AllOf(HasSubstr("asks every 5 s, and the node's watchdog takes the outputs that it has switched "
+                      "to their safe state after 0.5 s without a request"),
+            HasSubstr("write 'watchdog: {timeout: 15s}' into the node's map")));
+  EXPECT_THAT(said("{timeout: 15s}"), Not(HasSubstr("watchdog")));
+  EXPECT_THAT(said("{timeout: 15s}", ", rate: 0.1"), HasSubstr("write 'watchdog: {timeout: 30s}'"));
+  EXPECT_THAT(said("{timeout: 60s, fed_by: write}"), HasSubstr("does not repeat a command"));
+  EXPECT_THAT(said("{timeout: 60s}", ", access: write"), HasSubstr("has nothing to read"));
+}
+
+TEST(HomeAssistantExport, Names_begin_with_that_of_the_map_and_an_import_takes_it_off) {
+  const auto out =
+      exported("home-assistant", "coils: {lamp: 0}, input_registers: {level: {address: 1, type: INT}}");
+  EXPECT_THAT(out.text, AllOf(HasSubstr("- name: \"m lamp\"\n"), HasSubstr("- name: \"m level\"\n")));
+  EXPECT_THAT(out.text, AllOf(HasSubstr("unique_id: m_lamp\n"), HasSubstr("unique_id: m_level\n")));
+}
+
 TEST(HomeAssistantExport, No_two_entities_have_one_id) {
   const std::string points =
       "coils: {Lamp: 0, lamp: 1, lamp_2: 2}, discrete_inputs: {arm/left: 0, arm_left: 1}";
@@ -145,9 +170,9 @@ TEST(HomeAssistantExport, A_template_reads_the_sensor_that_gets_the_id) {
       "values: "
       "{1: b}}, pair: {address: 2, type: INT, count: 2}, pair_1: {address: 4, type: INT, values: {1: c}}}";
   EXPECT_THAT(exported("home-assistant", points).text,
-              AllOf(HasSubstr("{{ {'1': 'a'}.get(states('sensor.mode'), states('sensor.mode')) }}"),
-                    HasSubstr("{{ {'1': 'b'}.get(states('sensor.mode_2'), states('sensor.mode_2')) }}"),
-                    HasSubstr("{{ has_value('sensor.pair_1_2') }}")));
+              AllOf(HasSubstr("{{ {'1': 'a'}.get(states('sensor.m_mode'), states('sensor.m_mode')) }}"),
+                    HasSubstr("{{ {'1': 'b'}.get(states('sensor.m_mode_2'), states('sensor.m_mode_2')) }}"),
+                    HasSubstr("{{ has_value('sensor.m_pair_1_2') }}")));
   EXPECT_THAT(told("home-assistant", points), HasSubstr("get a number: mode, pair_1, mode; rename one"));
 }
 
@@ -175,7 +200,7 @@ TEST(HomeAssistantExport, What_an_import_reads_back_as_another_type_is_told) {
 TEST(HomeAssistantExport, A_swapped_bit_8_is_the_lowest_on_the_wire) {
   EXPECT_THAT(
       exported("home-assistant", "input_registers: {b: {address: 1, type: BOOL, bit: 8, order: BA}}").text,
-      HasSubstr("    binary_sensors:\n      - name: b\n"));
+      HasSubstr("    binary_sensors:\n      - name: \"m b\"\n"));
 }
 
 TEST(HomeAssistantExport, Scales_keep_their_decimals_and_slow_points_their_interval) {

@@ -42,6 +42,13 @@ TEST(HomeAssistantImport, A_hub_is_where_the_device_is_and_how_it_is_treated) {
   EXPECT_EQ(imported.said, "");
 }
 
+TEST(HomeAssistantImport, The_hubs_name_is_taken_off_names_that_all_begin_with_it) {
+  EXPECT_THAT(hub("switches: [{name: h lamp, address: 3}], sensors: {name: h h level, address: 4}").text(),
+              AllOf(HasSubstr("    lamp: "), HasSubstr("    h_level: ")));
+  EXPECT_THAT(hub("switches: [{name: h lamp, address: 3}, {name: horn, address: 4}]").text(),
+              AllOf(HasSubstr("    h_lamp: "), HasSubstr("    horn: ")));
+}
+
 TEST(HomeAssistantImport, A_timeout_may_be_a_fraction_and_is_no_longer_than_a_map_takes) {
   const std::string sensors = "sensors: [{name: s, address: 3}]";
   EXPECT_THAT(hub(sensors, "timeout: 0.5, ").text(), HasSubstr("timeout: 0.5\n"));

@@ -22,14 +22,24 @@ TEST(WiresharkExport, Is_a_table_of_the_points_and_then_the_same_for_every_map) 
   const auto out = dissector_of(
       "{name: Plant/A, unit: 3, port: 1502, mapping: {holding_registers: {\n"
       "  level: {address: 4, type: REAL, order: BADC, scale: 2, units: mm, read_address: 9}}}}");
-  EXPECT_THAT(out.text,
-              HasSubstr("name = \"Plant/A\", proto = \"coupler_plant_a\", unit = 3, port = 1502,\n"));
+  EXPECT_THAT(
+      out.text,
+      HasSubstr("name = \"Plant/A\", proto = \"coupler_plant_a\", unit = 3, port = 1502, address = \"\",\n"));
   EXPECT_THAT(out.text, HasSubstr("{ name = \"level\", table = \"holding_registers\", address = 4, size = 2, "
                                   "count = 1, readable = true, "
                                   "writable = true, read_from = 9, type = \"REAL\", bits = 32, "
                                   "words_reversed = false, bytes_swapped = true, "
                                   "gain = 2, offset = 0, units = \"mm\" },\n"));
   EXPECT_THAT(out.text, testing::EndsWith(std::string(formats::wireshark_body())));
+}
+
+TEST(WiresharkExport, Has_the_address_of_the_device_and_no_name_that_has_to_be_looked_up) {
+  const auto at = [](const std::string& address) {
+    return dissector_of("{name: m, address: '" + address + "', mapping: {coils: {a: 0}}}").text;
+  };
+  EXPECT_THAT(at("192.168.1.17"), HasSubstr("address = \"192.168.1.17\","));
+  EXPECT_THAT(at("fd00::8"), HasSubstr("address = \"fd00::8\","));
+  EXPECT_THAT(at("press.local"), HasSubstr("address = \"\","));
 }
 
 TEST(WiresharkExport, Texts_cannot_leave_their_quotes) {
