@@ -9,7 +9,7 @@
 
 namespace coupler::testing {
 
-static_assert(model_version == 19, "Compare the new fields of the model here, too");
+static_assert(model_version == 20, "Compare the new fields of the model here, too");
 
 /// What fields_of() lists.
 template <class Struct>
@@ -76,6 +76,7 @@ inline void expect_same(const Service& a, const Service& b) {
   expect_same_fields(a, b);
   EXPECT_TRUE(std::equal(a.allow.begin(), a.allow.end(), b.allow.begin(), b.allow.end()));
   expect_same_fields(a.watchdog, b.watchdog);
+  EXPECT_EQ(a.port, b.port);
 }
 
 inline void expect_same(const WatchdogSequences::Write& a, const WatchdogSequences::Write& b) {

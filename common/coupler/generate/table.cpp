@@ -82,7 +82,7 @@ constexpr Map map{{
     fingerprint,
     {{text, sizeof text - 1}},
     0x{crc:08x},  // CRC-32 of the text
-    {{{listen}, {allow_name}, {watchdog}, {readback}}},  // listen, allow, watchdog, readback
+    {{{listen}, {allow_name}, {watchdog}, {readback}, {service_port}}},  // listen, allow, watchdog, readback, port
     {on_reconnect}, {on_shutdown}, {unreadable_name},
     {coupler_watchdog},  // timeout, recovery, feed every, arm, feed, reset, how it shows that it has expired
     {poll}, {changes}, {verify},
@@ -326,11 +326,11 @@ std::string table_source(const Map& map, const Provenance& provenance) {
       arg("listen", literal(map.service.listen)),
       arg("allow_name", map.service.allow.empty() ? "{}" : "allow"),
       arg("watchdog", aggregate(map.service.watchdog)), arg("readback", map.service.readback),
-      arg("text", literal_lines(map.text, "    ")), arg("map_name", literal(map.name)),
-      arg("connection", aggregate(map.connection)), arg("connection_keys", keys_of<Connection>()),
-      arg("polling", aggregate(map.polling)), arg("polling_keys", keys_of<Polling>()),
-      arg("limits", aggregate(map.limits)), arg("limits_keys", keys_of<Limits>()),
-      arg("points_name", map.points.empty() ? "{}" : "points"),
+      arg("service_port", map.service.port), arg("text", literal_lines(map.text, "    ")),
+      arg("map_name", literal(map.name)), arg("connection", aggregate(map.connection)),
+      arg("connection_keys", keys_of<Connection>()), arg("polling", aggregate(map.polling)),
+      arg("polling_keys", keys_of<Polling>()), arg("limits", aggregate(map.limits)),
+      arg("limits_keys", keys_of<Limits>()), arg("points_name", map.points.empty() ? "{}" : "points"),
       arg("sim_name", map.sim.empty() ? "{}" : "sim"), arg("fingerprint", map.fingerprint),
       arg("crc", map.text_crc), arg("before", macros.before), arg("after", macros.after));
 }

@@ -17,12 +17,12 @@ namespace coupler {
 
 /// Raised with every change to Map, Point or what they hold: a table that was generated for another one does
 /// not compile.
-constexpr int model_version = 19;
+constexpr int model_version = 20;
 
 /// The place of the coupler. ROS parameters and arguments override it.
 struct Connection {
-  std::string_view address;  ///< host name or IP address; empty: not in the map
-  std::uint16_t port = modbus::default_port;
+  std::string_view address;                   ///< host name or IP address; empty: not in the map
+  std::uint16_t port = modbus::default_port;  ///< where the host connects; with TLS that for TLS
   std::uint8_t unit = 1;
   std::chrono::milliseconds timeout = usual_timeout(false);
   Framing framing = Framing::tcp;  ///< at `address`; a serial port has RTU
@@ -80,7 +80,8 @@ struct Service {
   std::string_view listen;  ///< address to listen on; empty: every interface (loopback if simulated)
   Span<const std::string_view> allow{};  ///< addresses and CIDR ranges that may connect; empty: everyone
   Watchdog watchdog;
-  bool readback = false;  ///< compare an output's level after driving it
+  bool readback = false;                      ///< compare an output's level after driving it
+  std::uint16_t port = modbus::default_port;  ///< for clients without TLS
 };
 
 /// The behaviour of the host when the connection comes and goes.

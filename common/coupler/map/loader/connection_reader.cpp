@@ -65,7 +65,10 @@ void check_tls(const Reader& top, Connection& connection, const Context& context
     context.problems.error(reader->find("pin")->at, fmt::format("'pin': '{}' is no pin", connection.tls.pin),
                            "write 'sha256:' and 64 hexadecimal digits, as 'coupler pin HOST' shows them");
   if (connection.is_rtu()) context.problems.error(at, "a device that speaks RTU has no TLS", "remove 'tls'");
-  if (!top.has("port")) connection.port = default_tls_port;
+  if (reader->has("port"))
+    reader->integer("port", connection.port);
+  else if (!top.has("port"))
+    connection.port = default_tls_port;
 }
 
 /// MSL 2.2
@@ -78,10 +81,12 @@ void check_unit(const Reader& top, const Connection& connection, const Context& 
 
 }  // namespace
 
-Connection read_connection(const Reader& top, const Entry* usual_line, const Context& context) {
+Connection read_connection(const Reader& top, const Entry* usual_line, std::uint16_t& port_without_tls,
+                           const Context& context) {
   Connection connection;
   if (usual_line != nullptr) Reader(*usual_line, Section::serial, context).fields(connection.serial);
   top.fields(connection);
+  port_without_tls = connection.port;
   check_address(top, connection, context);
   check_serial(top, connection, context);
   check_tls(top, connection, context);

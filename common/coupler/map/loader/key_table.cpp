@@ -406,6 +406,8 @@ constexpr Key keys[] = {
     project("name", S::tls, K::text, "press", "the name in the device's certificate, if not its address"),
     project("pin", S::tls, K::text, "\"sha256:0d0e…\"",
             "of the device's certificate, in place of `ca` and `name`"),
+    project("port", S::tls, K::integer, "802", "the device's TCP port for TLS; without it `port`, or 802")
+        .within(1, 65535),
     // `serial:`
     project("device", S::serial, K::text, "/dev/ttyUSB0", "the port's device file").needed(),
     project("baud", S::serial, K::integer, "9600", "bits a second").otherwise("19200").within(50, 4000000),

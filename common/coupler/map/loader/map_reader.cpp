@@ -36,10 +36,12 @@ Map read_head(const Reader& top, const Entry& root, std::string_view name, const
               const Context& context) {
   Map head;
   head.name = read_name(top, root, name, context);
-  head.connection = read_connection(top, usual_line, context);
+  std::uint16_t port_without_tls = 0;
+  head.connection = read_connection(top, usual_line, port_without_tls, context);
   head.polling = read_polling(top);
   head.limits = read_limits(top);
   head.service = read_service(top, context);
+  head.service.port = port_without_tls;
   top.fields(head);
   if (context.served) head.verify = Verify::require;  // what a node says of itself does not count
   return head;
@@ -180,7 +182,7 @@ std::optional<MapLayout> read_map(const Entry& file, const MapSource& source, Pl
   check_whole_areas(whole, unreadable, points, head, context);
   check_broadcast(top, points, head, context);
   check_reserved(reserved, points, context);
-  head.security = read_security(top, points, head.connection.port, context);
+  head.security = read_security(top, points, head.service.port, context);
   Joints joints(context);
   const std::vector<Tool> tools = read_tools(top, points, head, joints, context);
   const std::vector<Axis> axes = read_axes(top, points, head, tools, joints, context);

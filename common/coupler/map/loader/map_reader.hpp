@@ -25,8 +25,10 @@ Areas read_areas(const Reader& top, std::string_view key, Addressing addressing,
 std::vector<TableRange> by_place(const Areas& areas);
 
 /// Reads what the top of the file says about the coupler, and not about its points. `usual_line` is `serial:`
-/// of the map's preset, without a device, or nullptr.
-Connection read_connection(const Reader& top, const Entry* usual_line, const Context& context);
+/// of the map's preset, without a device, or nullptr. `port_without_tls` gets `port`, where a node with this
+/// map listens; that of the result may be the one for TLS.
+Connection read_connection(const Reader& top, const Entry* usual_line, std::uint16_t& port_without_tls,
+                           const Context& context);
 Polling read_polling(const Reader& top);
 Limits read_limits(const Reader& top);
 

@@ -88,7 +88,7 @@ tl::expected<std::unique_ptr<ServingContext>, ServeError> ServingContext::prepar
   context->owner = std::move(owner);
   context->map = &map;
   context->address = address_for(map, options);
-  context->port = options.port.value_or(map.connection.port);
+  context->port = options.port.value_or(map.service.port);
   context->tls_port = options.tls_port.value_or(map.security.port);
   if (auto listens = listen_all(*context, before); !listens)
     return failed(ServeError::device_failed, std::move(listens).error());

@@ -80,6 +80,10 @@ const Exporter* find_exporter(std::string_view name) {
   return found == std::end(formats) ? nullptr : found;
 }
 
+std::uint16_t port_without_tls(const Map& map) {
+  return map.connection.tls.present() ? map.service.port : map.connection.port;
+}
+
 bool lets_read_without_tls(const Map& map) {
   if (!map.security.present()) return true;
   if (!map.security.plain) return false;
@@ -92,7 +96,8 @@ bool lets_read_without_tls(const Map& map) {
 void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings) {
   if (map.connection.tls.present())
     warnings.add("the map has TLS, and this format has not",
-                 "name the coupler's port without TLS, where a node lets in whom its 'plain' says");
+                 fmt::format("port {}, without TLS, is written; a node lets in there whom its 'plain' says",
+                             port_without_tls(map)));
   if (!map.limits.transaction_ids)
     warnings.add("the device does not repeat transaction ids, and other programs compare them",
                  "look for a gateway that repeats them, or an option of the other program");

@@ -90,6 +90,9 @@ const Exporter* find_exporter(std::string_view name);
 /// for it.
 void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings);
 
+/// Returns the device's port for programs that have no TLS.
+std::uint16_t port_without_tls(const Map& map);
+
 /// Returns whether a client without TLS may read some point of the map.
 bool lets_read_without_tls(const Map& map);
 

@@ -215,7 +215,8 @@ class EntityWriter {
   Entities entities_;
 };
 
-std::string place_of(const Connection& connection) {
+std::string place_of(const Map& map) {
+  const Connection& connection = map.connection;
   const Serial& line = connection.serial;
   if (line.present())
     return fmt::format(
@@ -224,7 +225,7 @@ std::string place_of(const Connection& connection) {
         text(line.device), line.baud, parity_letter(line.parity), line.stop_bits);
   const std::string_view host = connection.address.empty() ? "localhost" : connection.address;
   return fmt::format("    type: {}\n    host: {}\n    port: {}\n", connection.is_rtu() ? "rtuovertcp" : "tcp",
-                     text(host), connection.port);
+                     text(host), port_without_tls(map));
 }
 
 std::string hub_of(const Map& map) {
@@ -232,8 +233,8 @@ std::string hub_of(const Map& map) {
     return std::chrono::ceil<std::chrono::seconds>(time).count();
   };
   const double timeout = std::chrono::duration<double>(map.connection.timeout).count();
-  std::string hub = fmt::format("modbus:\n  - name: {}\n{}    timeout: {}\n", text(map.name),
-                                place_of(map.connection), timeout);
+  std::string hub =
+      fmt::format("modbus:\n  - name: {}\n{}    timeout: {}\n", text(map.name), place_of(map), timeout);
   if (map.limits.connect_delay.count() > 0)
     hub += fmt::format("    delay: {}\n", seconds(map.limits.connect_delay));
   if (map.limits.request_gap.count() > 0)

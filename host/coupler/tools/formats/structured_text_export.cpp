@@ -225,7 +225,7 @@ class Writer {
     if (!connection.address.empty())  // a host name, which has nothing to escape
       constant("host", fmt::format("STRING[{}]", connection.address.size()),
                fmt::format("'{}'", connection.address));
-    constant("port", "UINT", fmt::to_string(connection.port));
+    constant("port", "UINT", fmt::to_string(port_without_tls(map_)));
   }
 
   void add_constants(const Side& inputs, const Side& outputs) {

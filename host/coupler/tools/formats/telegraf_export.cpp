@@ -147,7 +147,8 @@ std::string request_of(const Map& map, Table table, std::string_view order, cons
   return text + "    fields = [\n" + fields + "    ]\n";
 }
 
-std::string controller_of(const Connection& connection) {
+std::string controller_of(const Map& map) {
+  const Connection& connection = map.connection;
   const Serial& line = connection.serial;
   if (line.present())
     return fmt::format(
@@ -160,7 +161,7 @@ std::string controller_of(const Connection& connection) {
   const bool is_ipv6 = address.find(':') != std::string_view::npos;
   return fmt::format(
       "  controller = {}\n{}",
-      literal(fmt::format(is_ipv6 ? "tcp://[{}]:{}" : "tcp://{}:{}", address, connection.port)),
+      literal(fmt::format(is_ipv6 ? "tcp://[{}]:{}" : "tcp://{}:{}", address, port_without_tls(map))),
       connection.is_rtu() ? "  transmission_mode = \"RTUoverTCP\"\n" : "");
 }
 
@@ -169,7 +170,7 @@ std::string connection_of(const Map& map) {
   std::string text = fmt::format(
       "[[inputs.modbus]]\n  name = {}\n{}  timeout = \"{}ms\"\n  interval = \"{}ms\"\n"
       "  configuration_type = \"request\"\n",
-      literal(map.name), controller_of(map.connection), map.connection.timeout.count(), interval);
+      literal(map.name), controller_of(map), map.connection.timeout.count(), interval);
   const Limits& limits = map.limits;
   if (limits.connect_delay.count() > 0 || limits.request_gap.count() > 0)
     text += fmt::format(

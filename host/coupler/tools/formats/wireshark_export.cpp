@@ -75,7 +75,7 @@ Export write_wireshark(const Map& map) {
       "local map = {{\n"
       "  name = {3}, proto = \"{2}\", unit = {4}, port = {1}, address = {5},\n"
       "  points = {{\n",
-      map.name, map.connection.port, proto, lua_literal(map.name), map.connection.unit,
+      map.name, port_without_tls(map), proto, lua_literal(map.name), map.connection.unit,
       lua_literal(is_ip_address(map.connection.address) ? map.connection.address : ""));
   for (const Point& point : map.points) out.text += row_of(point);
   out.text += "  },\n}\n\n";

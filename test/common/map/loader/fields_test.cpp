@@ -51,7 +51,7 @@ static_assert(lists_all<Connection> && lists_all<Serial> && lists_all<Polling> &
 static_assert(fields<HostOptions> + 1 == members<HostOptions>, "The one more is deadman");
 static_assert(fields<Tool> + 1 == members<Tool>, "The one more is the name");
 static_assert(fields<Axis> + 1 == members<Axis>, "The one more is the name");
-static_assert(fields<Service> + 2 == members<Service>, "The two more are allow and watchdog");
+static_assert(fields<Service> + 3 == members<Service>, "The three more are allow, watchdog and port");
 
 TEST(Fields, The_key_table_has_each_of_their_keys) {
   using ::testing::IsEmpty;

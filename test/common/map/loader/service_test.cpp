@@ -103,7 +103,16 @@ TEST(Connection, With_TLS_has_port_802) {
   const MapPtr owned = test::load_with(tls);
   EXPECT_EQ(owned->map().connection.port, 802);
   EXPECT_EQ(owned->map().connection.tls.key, "cell1.key");
+  EXPECT_EQ(owned->map().service.port, 502);
   EXPECT_EQ(test::load_with(std::string("port: 1802\n") + tls)->map().connection.port, 1802);
+}
+
+TEST(Service, A_map_of_both_ends_has_the_ports_of_both) {
+  const MapPtr owned = test::load_with(
+      "port: 1502\ntls: {certificate: cell1.pem, key: cell1.key, ca: authority.pem, port: 1802}");
+  ASSERT_NE(owned, nullptr);
+  EXPECT_EQ(owned->map().connection.port, 1802);
+  EXPECT_EQ(owned->map().service.port, 1502);
 }
 
 TEST(Security, Without_plain_clients_may_do_nothing) {
