@@ -64,18 +64,24 @@ std::string meant_option(const CLI::App& app, const std::string& given, Nearest 
 
 /// Returns the proposal for the first of the arguments that is near to something; empty if none is.
 std::string proposal(const CLI::App& app, const std::vector<std::string>& extras, Nearest nearest,
-                     const std::string& option_of_stray) {
+                     const OptionsOfStrays& of_strays) {
   for (const std::string& extra : extras) {
     if (extra.size() < 3 || extra.compare(0, 2, "--") != 0) continue;
     if (const std::string meant = meant_option(app, extra, nearest); !meant.empty()) return meant;
   }
-  const bool is_stray = extras.size() == 1 && extras[0][0] != '-';
-  return is_stray && !option_of_stray.empty() ? option_of_stray + ' ' + extras[0] : std::string();
+  const bool are_strays = std::all_of(extras.begin(), extras.end(), [](const std::string& extra) {
+    return !extra.empty() && extra[0] != '-';
+  });
+  const std::string& option = extras.size() == 1 ? of_strays.one : of_strays.several;
+  if (!are_strays || option.empty()) return {};
+  std::string list;
+  for (const std::string& extra : extras) list += (list.empty() ? "" : ",") + extra;
+  return option + ' ' + list;
 }
 
 /// Returns the error; if it is about an unknown argument, with what was meant, or else with the version.
 CLI::Error told(const CLI::App& program, const CLI::ParseError& error, Nearest nearest,
-                const std::string& option_of_stray) {
+                const OptionsOfStrays& of_strays) {
   std::string what = error.what();
   const CLI::App* app = with_extras(program);
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) && app != nullptr) {
@@ -83,8 +89,7 @@ CLI::Error told(const CLI::App& program, const CLI::ParseError& error, Nearest n
     what = extras.size() > 1 ? "The following arguments were not expected:"
                              : "The following argument was not expected:";
     for (const std::string& extra : extras) what += ' ' + extra;  // CLI11 has them from the last to the first
-    const std::string meant =
-        nearest == nullptr ? std::string() : proposal(*app, extras, nearest, option_of_stray);
+    const std::string meant = nearest == nullptr ? std::string() : proposal(*app, extras, nearest, of_strays);
     what += meant.empty() ? or_newer(program.version()) : "; did you mean " + meant + '?';
   }
   return {error.get_name(), what, error.get_exit_code()};
@@ -190,7 +195,7 @@ std::optional<int> Program::parse(int argc, const char* const* argv) {
     if (app_->get_require_subcommand_min() > 0) refuse_unknown_command(argc, argv);
     app_->parse(argc, argv);
   } catch (const CLI::ParseError& stopped) {
-    return exit_status(app_->exit(told(*app_, stopped, nearest_, option_of_stray_)));
+    return exit_status(app_->exit(told(*app_, stopped, nearest_, options_of_strays_)));
   }
   return std::nullopt;
 }
@@ -202,7 +207,7 @@ std::optional<int> Program::parse(std::vector<std::string> arguments, std::strin
   } catch (const CLI::ParseError& stopped) {
     std::ostringstream out;
     std::ostringstream err;
-    const int status = exit_status(app_->exit(told(*app_, stopped, nearest_, option_of_stray_), out, err));
+    const int status = exit_status(app_->exit(told(*app_, stopped, nearest_, options_of_strays_), out, err));
     text += out.str() + err.str();
     return status;
   }

@@ -81,6 +81,12 @@ class Command {
 /// The candidate that was most likely meant by the word; empty if none is near.
 using Nearest = std::string_view (*)(std::string_view word, const std::vector<std::string_view>& candidates);
 
+/// The options that are proposed for one stray argument and for several; empty: none.
+struct OptionsOfStrays {
+  std::string one;
+  std::string several;
+};
+
 /// footer() and explain() hold for every command that is added after them.
 class Program : public Command {
  public:
@@ -92,8 +98,10 @@ class Program : public Command {
   void version(const std::string& text);
   /// Proposes the word that a wrong option or command is near to; `nearest` finds it, or is empty.
   void propose(Nearest nearest) { nearest_ = nearest; }
-  /// Proposes this option for a stray argument: "--map".
-  void stray_is_of(const std::string& option) { option_of_stray_ = option; }
+  /// Proposes an option for a stray argument, "--map", and one that takes a list for several, "--maps".
+  void stray_is_of(const std::string& option, const std::string& of_several) {
+    options_of_strays_ = {option, of_several};
+  }
   /// The user has to call one of the commands that are added.
   Command add_command(const std::string& name, const std::string& description);
   /// The message after a wrong call; `command`: "coupler check".
@@ -110,7 +118,7 @@ class Program : public Command {
 
   std::unique_ptr<CLI::App> owned_;
   Nearest nearest_ = nullptr;
-  std::string option_of_stray_;
+  OptionsOfStrays options_of_strays_;
 };
 
 }  // namespace coupler::command_line

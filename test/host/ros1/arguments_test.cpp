@@ -30,6 +30,8 @@ TEST(Arguments, The_origins_name_of_the_map_is_understood) {
 
 TEST(Arguments, What_was_meant_by_an_unexpected_one_is_proposed) {
   EXPECT_THAT(parse({"tx8.yaml"}).text, HasSubstr("not expected: tx8.yaml; did you mean --map tx8.yaml?"));
+  EXPECT_THAT(parse({"left.yaml", "right.yaml"}).text,
+              HasSubstr("; did you mean --maps left.yaml,right.yaml?"));
   EXPECT_THAT(parse({"--mpa", "tx8.yaml"}).text,
               HasSubstr("not expected: --mpa tx8.yaml; did you mean --map?"));
   EXPECT_THAT(parse({"--mpa=tx8.yaml"}).text, HasSubstr("did you mean --map?"));

@@ -30,7 +30,7 @@ Options parse_options(std::vector<std::string> arguments, const Dialect& dialect
   command_line::Program app(description, "coupler_driver");
   app.version(fmt::format("coupler_driver {}{}", version, dialect.left_out));
   app.propose(nearest);
-  app.stray_is_of("--map");
+  app.stray_is_of("--map", "--maps");
   app.footer(std::string(dialect.help));
   const std::vector<SettingKey>& keys = setting_keys();
   std::vector<std::string> texts(keys.size());
