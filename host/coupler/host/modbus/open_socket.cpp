@@ -106,7 +106,8 @@ NotConnected lookup_failure(const std::string& host, std::optional<int> status) 
   return {is_open ? fmt::format("the name '{}' could not be looked up ({}); check this machine's network and "
                                 "its name server, or give the IP address",
                                 host, why)
-                  : fmt::format("unknown host '{}' ({}); check the map's address", host, why)};
+                  : fmt::format("unknown host '{}' ({}); check the address", host, why),
+          true};
 }
 
 Result<Descriptor> connect_to_one(const addrinfo* addresses, const std::string& where,

@@ -83,6 +83,8 @@ class MapFinder {
     namespace fs = std::filesystem;
     std::error_code ignored;
     if (fs::path(path).is_absolute() || fs::exists(path, ignored)) return;
+    if (path.find(':') != std::string::npos && parse_node_address(node_argument(path)))
+      return log_(Level::error, fmt::format("if {0} is a node that serves its map, write tcp://{0}", path));
     log_(Level::error,
          fmt::format("there is no file {}; {}", fs::absolute(path, ignored).string(),
                      fmt::format(fmt::runtime(dialect_.relative_path), fmt::arg("path", path))));
