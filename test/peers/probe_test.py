@@ -39,6 +39,10 @@ def probe(*arguments, timeout=20):
                           capture_output=True, text=True, timeout=peer.PATIENCE)
 
 
+def run_coupler(*arguments):
+    return subprocess.run([COUPLER, *map(str, arguments)], capture_output=True, text=True, timeout=peer.PATIENCE)
+
+
 def addresses_in(plan):
     """What the requests of a plan read, by table."""
     read = {table: set() for table in READS}
@@ -224,16 +228,40 @@ def requests_keep_the_rate(checks):
 
 
 def a_node_is_known(folder, map_file, command, checks):
+    saved = folder / "saved.yaml"
+    name = re.search(r"^name: (\w+)", map_file.read_text(), re.M).group(1)
+    with peer.running_node(command) as port:
+        place = f"127.0.0.1:{port}"
+        before = json.loads(run_coupler("status", place, "--json").stdout)
+        found = probe(place)
+        after = json.loads(run_coupler("status", place, "--json").stdout)
+        checks.equal("node: exit status", (found.returncode, found.stderr.count("error")), (0, 0))
+        checks.equal("node: its name and version", re.findall(r"  (?:ProductName|MajorMinorRevision) +(.*)", found.stdout),
+                     [before["version"], name])
+        checks.equal("node: what it is", re.findall(r"an OpenCoupler node, which serves its map: fingerprint (.*)", found.stdout),
+                     [before["fingerprint"]])
+        points = json.loads(run_coupler("check", place, "--json").stdout)["points"]
+        checks.equal("node: its points", f"{place}/1: ok: {name}, {points} points (" in found.stdout, True)
+        checks.equal("node: what to do next", found.stdout.splitlines()[-1],
+                     f"Next: `coupler fetch {place}/1 -o FILE` saves its map, `coupler dump {place}/1` shows its values; "
+                     "--scan looks at its addresses all the same")
+        asked = after["statistics"]["requests"] - before["statistics"]["requests"]
+        pieces = before["map"]["bytes"] // 200 + 1  # of its map, when it is read
+        checks.equal(f"node: few requests: {asked}", asked < 20 + pieces, True)
+        checks.equal("node: its map is saved", (probe(place, "--out", saved).returncode, saved.read_bytes()), (0, map_file.read_bytes()))
+        printed = probe(place, "--out", "-")
+        checks.equal("node: its map on standard output", (printed.returncode, printed.stdout), (0, map_file.read_text()))
+        checks.equal("node: a file that is there stays", probe(place, "--out", saved).returncode, 2)
+
+
+def a_node_is_scanned(folder, command, checks):
     draft = folder / "node.yaml"
     with peer.running_node(command) as port:
-        found = probe(f"tcp://127.0.0.1:{port}", "--to", "200", "--known", "wide=305419896", "--out", draft)
-        checks.equal("node: exit status", found.returncode, 0)
-        checks.equal("node: it serves its map", f"coupler dump tcp://127.0.0.1:{port}/1" in found.stdout, True)
-        ranges = re.findall(r"readable: (.*)", found.stdout)
-        checks.equal("node: its ranges", ranges, ["0 … 9, 20", "0 … 3", "0 … 4", "0 … 16"])
-        checks.equal("node: a value of its map", "wide: {address: 1, type: UDINT, access: read}" in draft.read_text(), True)
-        identified = re.findall(r"  ProductName +(.*)", found.stdout)
-        checks.equal("node: its name", identified, [re.search(r"^name: (\w+)", map_file.read_text(), re.M).group(1)])
+        found = probe(f"tcp://127.0.0.1:{port}", "--scan", "--to", "200", "--known", "wide=305419896", "--out", draft)
+    checks.equal("scanned node: exit status", found.returncode, 0)
+    ranges = re.findall(r"readable: (.*)", found.stdout)
+    checks.equal("scanned node: its ranges", ranges, ["0 … 9, 20", "0 … 3", "0 … 4", "0 … 16"])
+    checks.equal("scanned node: a value of its map", "wide: {address: 1, type: UDINT, access: read}" in draft.read_text(), True)
 
 
 def who_is_not_there_is_told(checks):
@@ -264,6 +292,7 @@ def main():
                     pool.submit(ctrl_c_shows_what_was_found, checks),
                     pool.submit(requests_keep_the_rate, checks),
                     pool.submit(a_node_is_known, folder, map_file, command, checks),
+                    pool.submit(a_node_is_scanned, folder, command, checks),
                     pool.submit(who_is_not_there_is_told, checks)]:
                 part.result()
     checks.done("coupler probe finds what pymodbus servers and a node answer to, and its drafts read them")

@@ -177,6 +177,22 @@ def others_are_no_node(coupler, checks):
         checks.equal(f"exit status, '{wrong}'", status(coupler, wrong).returncode, 2)
 
 
+def several_are_shown_in_turn(coupler, node, checks):
+    device = foreign_server.Device({"holding_registers": {0: 1}})
+    with peer.running_node([node, str(MAP), "--sim"]) as port, foreign_server.serving(device) as foreign, peer.silent_port() as none:
+        places = [f"127.0.0.1:{port}" for port in (port, foreign, none)]
+        done = status(coupler, *places, "--json")
+        told = [json.loads(line) for line in done.stdout.splitlines()]
+        checks.equal("several: one object a line", [one["device"] for one in told], [f"tcp://{place}/1" for place in places])
+        checks.equal("several: which is a node", [one["node"] for one in told], [True, False, False])
+        checks.equal("several: the highest exit status", done.returncode, 3)
+        checks.equal("several: without the one that is away", status(coupler, places[1], places[0]).returncode, 1)
+        text = status(coupler, places[0], places[0])
+        checks.equal("several: as text", (text.returncode, text.stdout.count(f"the node at tcp://{places[0]}/1, ")), (0, 2))
+        wrong = status(coupler, places[0], "cell:0")
+        checks.equal("several: a wrong call asks nobody", (wrong.returncode, wrong.stdout), (2, ""))
+
+
 def main():
     coupler, node = sys.argv[1:]
     checks = peer.Checks()
@@ -184,6 +200,7 @@ def main():
     two_nodes_with_one_map_are_told_apart(coupler, node, checks)
     what_was_there_before_stays(coupler, node, checks)
     others_are_no_node(coupler, checks)
+    several_are_shown_in_turn(coupler, node, checks)
     checks.done("coupler status shows what a node says of itself, and which of two nodes with one map it is")
 
 

@@ -15,6 +15,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import zlib
 
 import peer
 from tls_node import Node, make_certificates
@@ -40,6 +41,13 @@ def the_tools(node, checks):
                                                            r"the node +'node', until \d{4}-")], [True, True])
     shown = json.loads(coupler("status", "--timeout", "20", place, "--ca", "ca.pem", "--json", name="no_role").stdout)["certificates"]
     checks.equal("and as JSON", [shown["own"]["name"], shown["own"]["role"], shown["device"]["name"]], ["no_role", None, "node"])
+    told = coupler("fetch", place, "--ca", "ca.pem")
+    checks.equal(f"fetch with such a role: {told.stderr}", (told.returncode, zlib.crc32(told.stdout.encode())),
+                 (0, int(json.loads(coupler("status", "--timeout", "20", place, "--ca", "ca.pem", "--json").stdout)["map"]["crc32"], 16)))
+    for command in ("fetch", "probe"):
+        told = coupler(command, place, "--ca", "ca.pem", name="no_role")
+        checks.equal(f"{command} without: {told.stderr}",
+                     (told.returncode, "gives its map only to clients that may read every point" in told.stderr), (3, True))
     told = coupler("dump", "cell.yaml", "--at", place, "--ca", "ca.pem", name="viewer")
     checks.equal("dump with another shows what it may", (told.returncode, "this client has no right to read it" in told.stdout),
                  (3, True))

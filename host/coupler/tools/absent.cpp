@@ -32,6 +32,10 @@ void add_dump(Program& program, Exit& exit) {
              "libmodbus-dev");
 }
 
+void add_fetch(Program& program, Exit& exit) {
+  add_absent(program, exit, "fetch", "Save the map that a node serves", "libmodbus", "libmodbus-dev");
+}
+
 void add_probe(Program& program, Exit& exit) {
   add_absent(program, exit, "probe", "Find out what a device answers to", "libmodbus", "libmodbus-dev");
 }

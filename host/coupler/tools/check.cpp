@@ -67,18 +67,15 @@ void add_check(Program& program, Exit& exit) {
   auto command =
       program.add_command("check", "Say what is wrong with a map, where, and what to do about it.");
   const auto arguments = std::make_shared<Arguments>();
-  command
-      .add_option("MAP", arguments->maps,
-                  "YAML or JSON files; - is standard input; tcp:// or tls://HOST[:PORT][/UNIT] is a node")
-      .required()
-      .type_name("");
+  command.add_option("MAP", arguments->maps, map_help).required().type_name("");
   command.add_flag("--json", arguments->json,
                    "One JSON object per map on standard output, for editors and scripts");
   command.add_flag("--locked", arguments->locked,
                    "Write nothing; a lock that is missing or not up to date is an error. For CI");
   add_tls_options(command, arguments->tls);
   command.footer(
-      "Example:\n  coupler check device.yaml\nPoints without an address get one, which is kept in "
+      "Example:\n  coupler check device.yaml\n  coupler check raspberrypi\nPoints without an address get "
+      "one, which is kept in "
       "device.yaml.lock beside the map.\nExit status 0: every map is valid; 1: at least one is not.");
   command.callback([arguments, &exit] { exit = check(*arguments); });
 }

@@ -58,6 +58,7 @@ void add_check(Program& program, Exit& exit);
 void add_diff(Program& program, Exit& exit);
 void add_dump(Program& program, Exit& exit);
 void add_export(Program& program, Exit& exit);
+void add_fetch(Program& program, Exit& exit);
 void add_generate(Program& program, Exit& exit);
 void add_import(Program& program, Exit& exit);
 void add_init(Program& program, Exit& exit);

@@ -15,7 +15,6 @@ struct DeviceArgument {
   std::string map;
   std::string at;
   TlsTexts tls;
-  bool may_be_unknown = false;  ///< `map` may be the place of a device whose map is found out
 };
 
 void add_device_options(command_line::Command& command, DeviceArgument& arguments);

@@ -150,7 +150,7 @@ void add_diff(Program& program, Exit& exit) {
   const auto arguments = std::make_shared<Arguments>();
   command
       .add_option("OLD", arguments->versions.older,
-                  "A file, REVISION:PATH of git, or tcp://HOST[:PORT][/UNIT]")
+                  "A file, REVISION:PATH of git, or HOST[:PORT][/UNIT] of a node that serves its map")
       .required()
       .type_name("");
   command.add_option("NEW", arguments->versions.newer, "The same").required().type_name("");
@@ -166,7 +166,7 @@ void add_diff(Program& program, Exit& exit) {
   add_tls_options(command, arguments->tls);
   command.footer(
       "Example:\n  coupler diff main:config/cell.yaml config/cell.yaml\n  coupler diff cell.yaml "
-      "tcp://raspberrypi\n"
+      "raspberrypi\n"
       "A change is breaking exactly when a driver with the old map would refuse a node with the new one.");
   command.callback([arguments, &exit] { exit = run(*arguments); });
 }

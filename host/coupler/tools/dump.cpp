@@ -291,7 +291,7 @@ void add_dump(Program& program, Exit& exit) {
   command.add_flag("--json", arguments->json,
                    "One JSON object on standard output, for scripts; with --watch one per line");
   command.footer(
-      "Example:\n  coupler dump tcp://raspberrypi\n  coupler dump device.yaml --at 10.0.0.7 --points "
+      "Example:\n  coupler dump raspberrypi\n  coupler dump device.yaml --at 10.0.0.7 --points "
       "'pump_*' --watch 0.5\n"
       "Exit status 3: the device cannot be reached, or a point cannot be read.");
   command.callback([arguments, watch, &exit] {

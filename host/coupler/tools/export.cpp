@@ -77,7 +77,8 @@ void add_export(Program& program, Exit& exit) {
   command.add_flag("--list", arguments->list, "Print the formats");
   add_tls_options(command, arguments->tls);
   command.footer(
-      "Example:\n  coupler export device.yaml --to csv --out device.csv\n"
+      "Example:\n  coupler export device.yaml --to csv --out device.csv\n  coupler export raspberrypi --to "
+      "csv\n"
       "Warnings on standard error say what the format cannot express.");
   command.callback([arguments, &exit] { exit = run(*arguments); });
 }

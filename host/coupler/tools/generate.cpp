@@ -59,10 +59,8 @@ bool is_url_part(std::string_view text) {
   });
 }
 
-/// Returns the target of the links in the pages: relative to their folder, or on a forge. Standard input and
-/// a node have no links.
+/// Returns the target of the links in the pages to a map's file: relative to their folder, or on a forge.
 std::string url_of_map(const Arguments& arguments) {
-  if (arguments.map == "-" || names_a_node(arguments.map)) return {};
   const fs::path map = fs::absolute(arguments.map).lexically_normal();
   if (arguments.source_url.empty())
     return url_path(map.lexically_relative(fs::absolute(folder_of(arguments)).lexically_normal()).string());
@@ -70,10 +68,13 @@ std::string url_of_map(const Arguments& arguments) {
   return arguments.source_url + (ended ? "" : "/") + url_path(map.filename().string());
 }
 
-/// NAME.html and NAME.md. `lines`: of the points, as LoadResult::point_lines.
+/// NAME.html and NAME.md. Only a file is linked to, and not standard input or a node.
 std::vector<generate::File> map_pages(const Arguments& arguments, const std::string& name,
-                                      const std::string& source, const Map& map, Span<const int> lines) {
-  const auto document = docs::make_document(map, lines, {source, url_of_map(arguments), COUPLER_VERSION});
+                                      const std::string& source, const Map& map,
+                                      const MapArgument& argument) {
+  const bool is_file = arguments.map != "-" && !argument.node;
+  const docs::Provenance from{source, is_file ? url_of_map(arguments) : "", COUPLER_VERSION};
+  const auto document = docs::make_document(map, argument.loaded.point_lines, from);
   const std::string file = as_file_name(name);
   return {{file + ".html", docs::html_page(document)}, {file + ".md", docs::markdown_page(document)}};
 }
@@ -142,8 +143,9 @@ Exit run(const Arguments& arguments) {
   print(loaded.diagnostics);
   std::fputs(lock_report(loaded.lock).c_str(), to_folder ? stdout : stderr);
   if (!loaded.map) return argument.exit;
-  const std::string source =
-      arguments.map == "-" ? "standard input" : fs::path(arguments.map).filename().string();
+  const std::string source = arguments.map == "-" ? "standard input"
+                             : argument.node      ? arguments.map
+                                                  : fs::path(arguments.map).filename().string();
   const std::string_view lost =
       argument.node && !arguments.python && !arguments.vectors ? lost_key(argument) : std::string_view();
   if (!lost.empty())
@@ -153,7 +155,7 @@ Exit run(const Arguments& arguments) {
         "give the file of its map");
   const Map map = argument.map();
   const std::string name = arguments.name.empty() ? std::string(map.name) : arguments.name;
-  if (arguments.docs) return write(arguments, map_pages(arguments, name, source, map, loaded.point_lines));
+  if (arguments.docs) return write(arguments, map_pages(arguments, name, source, map, argument));
   if (arguments.vectors)
     return write(arguments,
                  {{as_file_name(name) + "_vectors.json", test_vectors::json(map, source, COUPLER_VERSION)}});
@@ -214,7 +216,8 @@ void add_generate(Program& program, Exit& exit) {
       "makes device_map.hpp and .cpp, device_client.hpp and .cpp, device_hooks.hpp, device_core.hpp, "
       "device_node.cpp and device_driver.cpp. Files that would not change are not touched.\n"
       "  coupler generate device.yaml --docs\nmakes device.md and device.html.\n"
-      "  coupler generate device.yaml --python\nmakes device_client.py with the class DeviceClient.\n"
+      "  coupler generate device.yaml --python\nmakes device_client.py with the class DeviceClient; "
+      "of the map of a node: coupler generate raspberrypi --python\n"
       "  coupler generate device.yaml --vectors\nmakes device_vectors.json.\n"
       "In a CMake build, coupler_add_map(device device.yaml) does this and builds the "
       "programs.");

@@ -185,9 +185,8 @@ Exit init(const Arguments& given) {
   const bool to_file = arguments.out != standard_output;
   const std::filesystem::path map =
       names_no_file(arguments.out) ? arguments.starter.name + ".yaml" : arguments.out;
-  if (to_file && !arguments.force && std::filesystem::exists(map))
-    return complain("init", bad_call, fmt::format("{} already exists", map.string()),
-                    "name another file with --out, or replace it with --force");
+  if (to_file)
+    if (const auto can = can_make(map.string(), arguments.force); !can) return complain("init", can.error());
   const std::string text = starter_map(arguments.starter);
   const LoadResult loaded = load_map(text, map.string());
   if (!loaded.map) {  // the name, the address or the preset

@@ -9,6 +9,7 @@
 #include "coupler/host/core/node_map.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/tools/modbus_client.hpp"
+#include "coupler/tools/place_argument.hpp"
 #include "coupler/tools/probe_scan.hpp"
 
 namespace coupler::tools {
@@ -35,12 +36,19 @@ tl::expected<MapPtr, Failure> map_in(const Fetched& served, const Connection& wh
                 "give the file of its map instead, or a certificate whose role has 'read: all'");
   if (!served && host::exception_in(served.error()) != nullptr)
     return fail(failed, "the node does not give its map: " + host::to_string(served.error()), give_a_file);
-  if (!served)
-    return fail(failed, "no answer from a node: " + host::to_string(served.error()),
-                reach_remedy(where, served.error(),
-                             fmt::format("check that a node serves at {}, as unit {}", place_text(where),
-                                         where.unit)));
-  if (!*served) return fail(bad_input, "a foreign coupler, which serves no map", give_a_file);
+  if (!served) {
+    std::string remedy = reach_remedy(
+        where, served.error(),
+        fmt::format("check that a node serves at {}, as unit {}", place_text(where), where.unit));
+    if (is_silent(served.error()))
+      remedy += fmt::format("; if it is none, `coupler probe {}` says what it answers to",
+                            as_argument(node_address_text(where)));
+    return fail(failed, "no answer from a node: " + host::to_string(served.error()), remedy);
+  }
+  if (!*served)
+    return fail(bad_input, "a foreign coupler, which serves no map",
+                fmt::format("`coupler probe {} --out FILE` drafts one, or give the file of its map",
+                            as_argument(node_address_text(where))));
   auto map = host::load_node_map((*served)->text, (*served)->head, load_served_map);
   if (!map) return fail(bad_input, "the node's map cannot be used: " + map.error(), "");
   return *map;

@@ -31,8 +31,8 @@ int main(int argc, char** argv) {
 
   auto exit = ok;
   for (const auto add :
-       {add_certificates, add_check, add_diff, add_dump, add_export, add_generate, add_import, add_init,
-        add_panel, add_pin, add_plan, add_probe, add_record, add_schema, add_status})
+       {add_certificates, add_check, add_diff, add_dump, add_export, add_fetch, add_generate, add_import,
+        add_init, add_panel, add_pin, add_plan, add_probe, add_record, add_schema, add_status})
     add(program, exit);
   std::optional<int> done;
   try {

@@ -2,8 +2,6 @@
 #include "coupler/tools/map_argument.hpp"
 
 #include <spawn.h>
-#include <sys/stat.h>
-#include <sys/sysmacros.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,38 +15,45 @@
 #include <fmt/format.h>
 #include <tl/expected.hpp>
 
-#include "coupler/base/starts_with.hpp"
 #include "coupler/generate/output.hpp"
+#include "coupler/map/network.hpp"
 #include "coupler/tools/live_map.hpp"
 
 namespace coupler::tools {
 namespace {
 
-bool ends_in(std::string_view text, std::string_view end) {
-  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+MapArgument no_map(const std::string& argument, const Failure& why) {
+  MapArgument none;
+  none.exit = why.exit;
+  none.loaded.diagnostics.push_back({Diagnostic::Severity::error, argument, 0, 0, why.what, why.remedy});
+  return none;
 }
 
-/// Returns whether this is the absolute path of a device that can be a serial line, unlike /dev/null or
-/// /dev/gpiochip0. A pseudo-terminal has no entry in /sys.
-bool can_be_a_serial_line(const std::string& path) {
-  struct stat status {};
-  if (!starts_with(path, "/") || ::stat(path.c_str(), &status) != 0 || !S_ISCHR(status.st_mode)) return false;
-  std::error_code ignored;
-  const auto subsystem = std::filesystem::read_symlink(
-      fmt::format("/sys/dev/char/{}:{}/subsystem", major(status.st_rdev), minor(status.st_rdev)), ignored);
-  return subsystem.empty() || subsystem.filename() == "tty";
+tl::expected<FoundMap, Failure> served_map(const Place& place) {
+  auto map = fetch_live_map(place.connection);
+  if (!map) return tl::make_unexpected(std::move(map.error()));
+  return FoundMap{*std::move(map), place.connection};
 }
 
-MapArgument from_node(const std::string& argument, const TlsTexts& tls) {
-  const auto node = parse_node_address(argument);
-  if (!node) return no_map(argument, {bad_call, node.error().what, node.error().remedy});
-  MapArgument found{{}, ok, *node};
-  if (const auto problem = use_tls_options(*node, tls, found.tls)) return no_map(argument, *problem);
-  Connection connection = found_at({}, *node).connection;
-  connection.tls = found.tls;
-  auto map = fetch_live_map(connection);
-  if (!map) return no_map(argument, map.error());
-  found.loaded.map = std::move(*map);
+/// What was neither a file nor a device that can be reached. An address cannot be meant as a file.
+Failure neither(const std::string& argument, Failure why) {
+  const std::string place = node_argument(argument);
+  const auto node = parse_node_address(place);
+  const bool is_address = node && (node->serial.present() || is_ip_address(node->host));
+  if (names_a_node(argument) || is_address || why.exit == bad_input) return why;
+  return {why.exit, "no such file, and as a device: " + why.what,
+          (why.remedy.empty() ? "" : why.remedy + "; ") + "or give the path of a map"};
+}
+
+MapArgument from_device(const std::string& argument, const TlsTexts& tls, const FindMap& find) {
+  const auto place = get_place(argument, tls);
+  if (!place) return no_map(argument, neither(argument, place.error()));
+  auto map = find(*place);
+  if (!map) return no_map(argument, neither(argument, map.error()));
+  MapArgument found{{}, ok, place->node, place->connection.tls, place->text};
+  found.loaded.map = std::move(map->map);
+  found.node->unit = map->where.unit;
+  found.node->serial = map->where.serial;
   return found;
 }
 
@@ -63,12 +68,8 @@ LoadResult load_and_renew_lock(const std::string& path) {
   return {nullptr, std::move(loaded.diagnostics)};
 }
 
-/// If it can be a host or a serial line, the error says how a node there is named.
-MapArgument from_file(const std::string& argument, const TlsTexts& tls, LoadResult loaded) {
+MapArgument from_file(LoadResult loaded) {
   const Exit exit = loaded.map ? ok : bad_input;
-  const std::string node = any_given(tls) ? "tls://" + argument : node_argument(argument);
-  if (exit != ok && can_be_a_device(argument) && parse_node_address(node))
-    loaded.diagnostics.back().remedy += fmt::format("; for the map of a node write {}", node);
   return {std::move(loaded), exit};
 }
 
@@ -131,12 +132,12 @@ tl::expected<std::string, std::string> git_show(const std::string& object) {
   return tl::unexpected<std::string>(said.rfind("fatal: ", 0) == 0 ? said.substr(7) : said);
 }
 
-/// REVISION:PATH, and not a file of that name.
+/// REVISION:PATH, and neither a file of that name nor HOST:PORT.
 bool names_a_revision(const std::string& argument) {
   const auto colon = argument.find(':');
   std::error_code ignored;
-  return colon != std::string::npos && colon != 0 && colon + 1 < argument.size() &&
-         !std::filesystem::exists(argument, ignored);
+  return colon != std::string::npos && colon != 0 && colon + 1 < argument.size() && !names_a_node(argument) &&
+         !parse_node_address(node_argument(argument)) && !std::filesystem::exists(argument, ignored);
 }
 
 /// The lock is that of the same revision.
@@ -156,24 +157,6 @@ LoadResult load_revision(const std::string& argument) {
 
 }  // namespace
 
-MapArgument no_map(const std::string& argument, const Failure& why) {
-  MapArgument none;
-  none.exit = why.exit;
-  none.loaded.diagnostics.push_back({Diagnostic::Severity::error, argument, 0, 0, why.what, why.remedy});
-  return none;
-}
-
-bool can_be_a_device(const std::string& argument) {
-  if (names_a_node(argument)) return true;
-  std::error_code ignored;
-  if (std::filesystem::exists(argument, ignored)) return can_be_a_serial_line(argument);
-  for (const std::string_view end : {".yaml", ".yml", ".json"})
-    if (ends_in(argument, end)) return false;
-  if (starts_with(argument, "/")) return starts_with(argument, "/dev/");
-  if (argument.find('/') == std::string::npos) return argument != "-";
-  return parse_node_address(node_argument(argument)).has_value();
-}
-
 Map MapArgument::map() const {
   if (!node) return loaded.map->map();
   Map map = found_at(loaded.map->map(), *node);
@@ -181,15 +164,13 @@ Map MapArgument::map() const {
   return map;
 }
 
-MapArgument get_map(const std::string& argument, const TlsTexts& tls, LockUse use) {
-  if (names_a_node(argument)) return from_node(argument, tls);
-  return from_file(argument, tls,
-                   use == LockUse::renew ? load_and_renew_lock(argument) : load_map_file(argument, use));
+MapArgument get_map(const std::string& argument, const TlsTexts& tls, LockUse use, const FindMap& find) {
+  if (can_be_a_device(argument)) return from_device(argument, tls, find ? find : served_map);
+  return from_file(use == LockUse::renew ? load_and_renew_lock(argument) : load_map_file(argument, use));
 }
 
 MapArgument get_version(const std::string& argument, const TlsTexts& tls) {
-  if (names_a_node(argument) || !names_a_revision(argument)) return get_map(argument, tls);
-  return from_file(argument, tls, load_revision(argument));
+  return names_a_revision(argument) ? from_file(load_revision(argument)) : get_map(argument, tls);
 }
 
 }  // namespace coupler::tools

@@ -28,6 +28,19 @@ Exit write_file(std::string_view command, std::string_view option, const std::st
 
 }  // namespace
 
+tl::expected<void, Failure> can_make(const std::string& out, bool force) {
+  if (names_no_file(out)) return {};
+  const std::filesystem::path path(out);
+  std::error_code ignored;
+  if (!force && std::filesystem::exists(path, ignored))
+    return fail(bad_call, out + " already exists",
+                "name another file with --out, or replace it with --force");
+  if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path(), ignored))
+    return fail(bad_call, path.parent_path().string() + " is not a folder",
+                "create it, or name another one with --out");
+  return {};
+}
+
 Exit write_out(std::string_view command, const std::string& out, const std::string& text) {
   if (!names_no_file(out)) return write_file(command, "--out", out, text);
   put(::isatty(STDOUT_FILENO) == 1 ? printable_lines(text) : text);

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include <tl/expected.hpp>
+
 #include "coupler/tools/commands.hpp"
 
 namespace coupler::tools {
@@ -15,6 +17,10 @@ constexpr std::string_view standard_output = "-";
 
 /// Returns whether --out is not given or is standard output.
 inline bool names_no_file(const std::string& out) { return out.empty() || out == standard_output; }
+
+/// Returns whether a command may make the file that --out names, if it names one: whether its folder is
+/// there, and the file is not, or may be replaced. To be asked before a device is.
+tl::expected<void, Failure> can_make(const std::string& out, bool force);
 
 /// Writes what a command makes: to standard output if `out` names no file. Returns how the command ends.
 Exit write_out(std::string_view command, const std::string& out, const std::string& text);

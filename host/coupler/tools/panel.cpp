@@ -241,7 +241,6 @@ void add_panel(Program& program, Exit& exit) {
   auto command =
       program.add_command("panel", "Show a device's points live, as a page in a browser, until Ctrl-C.");
   const auto arguments = std::make_shared<Arguments>();
-  arguments->device.may_be_unknown = true;
   add_device_options(command, arguments->device);
   command.add_option("--port", arguments->port, "Port of the page (default: any free one)");
   command

@@ -79,7 +79,7 @@ void add_plan(Program& program, Exit& exit) {
   command.add_option("--svg", arguments->svg, "Write a picture of the address spaces").type_name("FILE");
   add_tls_options(command, arguments->tls);
   command.footer(
-      "Example:\n  coupler plan device.yaml --rtt 2.5 --svg device.svg\n"
+      "Example:\n  coupler plan device.yaml --rtt 2.5 --svg device.svg\n  coupler plan raspberrypi:1502\n"
       "The driver makes the same requests. It warns when they do not fit into their time.");
   command.callback([arguments, &exit] { exit = run(*arguments); });
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -17,29 +16,32 @@
 #include "coupler/map/fields.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/tools/commands.hpp"
+#include "coupler/tools/live_map.hpp"
 #include "coupler/tools/output_argument.hpp"
 #include "coupler/tools/probe_call.hpp"
 #include "coupler/tools/probe_report.hpp"
 #include "coupler/tools/probe_scan.hpp"
 #include "coupler/tools/report.hpp"
+#include "coupler/tools/save_map.hpp"
 
 namespace coupler::tools {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// Before anything is asked: a draft that cannot be written would cost a scan.
-tl::expected<void, Failure> can_write(const ProbeArguments& arguments) {
-  if (names_no_file(arguments.out)) return {};
-  const fs::path path(arguments.out);
-  std::error_code ignored;
-  if (!arguments.force && fs::exists(path, ignored))
-    return fail(bad_call, arguments.out + " already exists",
-                "name another file with --out, or replace it with --force");
-  if (path.has_parent_path() && !fs::is_directory(path.parent_path(), ignored))
-    return fail(bad_call, path.parent_path().string() + " is not a folder",
-                "create it, or name another one with --out");
-  return {};
+/// Says what a node is, which has been found in place of an unknown device, and saves its map if that is
+/// asked for. `report`: what the scan has to say.
+Exit tell_of_node(const ProbeArguments& arguments, const std::string& report, Connection where) {
+  std::FILE* const to = arguments.out == standard_output ? stderr : stdout;
+  std::fputs(report.c_str(), to);
+  where.timeout = usual_timeout(where.is_rtu());  // a piece of a map is longer than what a scan asks for
+  const auto map = fetch_live_map(where);
+  if (!map) return complain("probe", map.error());
+  if (!arguments.out.empty()) return save_map("probe", arguments.out, (*map)->map(), where);
+  const std::string device = as_argument(where);
+  fmt::print(to,
+             "{}\nNext: `coupler fetch {} -o FILE` saves its map, `coupler dump {}` shows its values; --scan "
+             "looks at its addresses all the same\n",
+             summary(device, (*map)->map()), device, device);
+  return ok;
 }
 
 Exit write(const std::string& path, const std::string& text) {
@@ -61,10 +63,11 @@ Exit write(const std::string& path, const std::string& text) {
 }
 
 Exit run(const ProbeArguments& arguments) {
-  const std::string address = node_argument(arguments.host);
-  auto call = understand(arguments, address);
+  const auto place = get_place(arguments.host, arguments.tls);
+  if (!place) return complain("probe", place.error());
+  auto call = understand(arguments, *place);
   if (!call) return complain("probe", call.error());
-  if (const auto can = can_write(arguments); !can) return complain("probe", can.error());
+  if (const auto can = can_make(arguments.out, arguments.force); !can) return complain("probe", can.error());
 
   const scan::Findings findings = look_at_each_line(*call);
   if (findings.broke_off) complain("probe", why_unreachable(*findings.broke_off, call->connection));
@@ -76,8 +79,9 @@ Exit run(const ProbeArguments& arguments) {
     matches.push_back({known, scan::find_candidates(known, findings.tables)});
   call->connection.unit = *findings.unit;
   const bool to_file = arguments.out != standard_output;
-  std::fputs(probe_report(findings, call->task, call->connection, matches).c_str(),
-             to_file ? stdout : stderr);
+  const std::string report = probe_report(findings, call->task, call->connection, matches);
+  if (findings.node && !arguments.scan) return tell_of_node(arguments, report, call->connection);
+  std::fputs(report.c_str(), to_file ? stdout : stderr);
   Exit exit = findings.broke_off ? failed : ok;
   if (shows_nothing(findings)) {
     if (arguments.out.empty()) return exit;
@@ -110,11 +114,7 @@ void add_probe(Program& program, Exit& exit) {
       "probe",
       "Find out what a device without a map answers to, and draft its map. It reads and never writes.");
   const auto arguments = std::make_shared<ProbeArguments>();
-  command
-      .add_option("HOST", arguments->host,
-                  "HOST[:PORT][/UNIT], with tls:// in front or not, or a serial port as /dev/ttyUSB0[/UNIT]")
-      .required()
-      .type_name("");
+  command.add_option("HOST", arguments->host, place_help).required().type_name("");
   command
       .add_option("--units", arguments->units,
                   "Unit ids to ask, as 1-247 (default: 1, 255, 0; with RTU 1-247)")
@@ -159,9 +159,12 @@ void add_probe(Program& program, Exit& exit) {
       .one_value();
   command
       .add_option("--out", arguments->out,
-                  "Write a draft of the map; - is standard output, and the report is on standard error then")
+                  "Write a draft of the map, or the map that a node serves; - is standard output, and the "
+                  "report is on standard error then")
       .type_name("FILE");
   command.add_flag("--force", arguments->force, "Replace an existing file");
+  command.add_flag("--scan", arguments->scan,
+                   "Also scan a node that serves its map; without it that map is all that is asked for");
   add_tls_options(command, arguments->tls);
   command.footer(example);
   command.callback([arguments, &exit] { exit = run(*arguments); });

@@ -118,17 +118,13 @@ std::chrono::milliseconds timeout_of(const ProbeArguments& arguments, bool is_se
 
 }  // namespace
 
-tl::expected<ProbeCall, Failure> understand(const ProbeArguments& arguments, const std::string& address) {
-  const auto where = parse_node_address(address);
-  if (!where) return wrong(where.error().what, where.error().remedy);
+tl::expected<ProbeCall, Failure> understand(const ProbeArguments& arguments, const Place& place) {
   if (arguments.from > arguments.to)
     return wrong(fmt::format("--from {} is greater than --to {}", arguments.from, arguments.to), "swap them");
   ProbeCall call;
-  call.connection = found_at({}, *where).connection;
-  if (const auto problem = use_tls_options(*where, arguments.tls, call.connection.tls))
-    return tl::make_unexpected(*problem);
+  call.connection = place.connection;
   const Serial& line = call.connection.serial;
-  auto units = units_of(arguments.units, call.connection, names_a_unit(*where, address));
+  auto units = units_of(arguments.units, call.connection, names_a_unit(place.node, *place.text));
   if (!units) return tl::make_unexpected(units.error());
   auto known = known_values(arguments.known);
   if (!known) return tl::make_unexpected(known.error());
@@ -138,13 +134,14 @@ tl::expected<ProbeCall, Failure> understand(const ProbeArguments& arguments, con
     return wrong("--baud and --parity are for a serial port",
                  "give its path, as /dev/ttyUSB0, or leave them out");
   if (line.present()) {
-    auto lines = lines_of(arguments, line, address);
+    auto lines = lines_of(arguments, line, *place.text);
     if (!lines) return tl::make_unexpected(lines.error());
     call.lines = std::move(*lines);
   }
   call.task.units = std::move(*units);
   call.task.stride = arguments.stride;
   call.task.rate = arguments.rate;
+  if (!arguments.scan) call.task.ends = scan::Task::Ends::at_node;
   call.task.window = modbus::Range::of(arguments.from, arguments.to - arguments.from + 1);
   call.known = std::move(*known);
   return call;

@@ -11,7 +11,7 @@
 #include "coupler/host/scan/known_value.hpp"
 #include "coupler/host/scan/scan.hpp"
 #include "coupler/map/map.hpp"
-#include "coupler/tools/tls_argument.hpp"
+#include "coupler/tools/place_argument.hpp"
 
 namespace coupler::tools {
 
@@ -30,6 +30,7 @@ struct ProbeArguments {
   std::vector<std::string> known;
   std::string out;
   bool force = false;
+  bool scan = false;  ///< a node, too, is scanned
 };
 
 struct ProbeCall {
@@ -40,7 +41,7 @@ struct ProbeCall {
   int ended_by = 0;  ///< the signal that has ended the scan; 0 if none has
 };
 
-/// The connection is a view of `address`, which is the host as node_argument() completes it.
-tl::expected<ProbeCall, Failure> understand(const ProbeArguments& arguments, const std::string& address);
+/// The connection is that of `place`, which must outlive the result.
+tl::expected<ProbeCall, Failure> understand(const ProbeArguments& arguments, const Place& place);
 
 }  // namespace coupler::tools

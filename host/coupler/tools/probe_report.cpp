@@ -8,8 +8,10 @@
 #include "coupler/host/scan/identification.hpp"
 #include "coupler/host/scan/texts.hpp"
 #include "coupler/map/fields.hpp"
+#include "coupler/map/fingerprint.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/map/printable.hpp"
+#include "coupler/tools/place_argument.hpp"
 
 namespace coupler::tools {
 namespace {
@@ -24,19 +26,11 @@ constexpr std::size_t most_candidates = 6;
 /// "10.0.0.7:502/255", to be given to a command, with what is known of a serial line.
 std::string place(Connection connection, std::uint8_t unit) {
   connection.unit = unit;
-  const std::string address = printable(node_address_text(connection));
   const Serial& line = connection.serial;
   if (line.present())
     return printable(
         fmt::format("{}/{} --baud {} --parity {}", line.device, unit, line.baud, to_string(line.parity)));
-  constexpr std::string_view tcp = "tcp://";
-  return address.rfind(tcp, 0) == 0 ? address.substr(tcp.size()) : address;
-}
-
-/// "tcp://10.0.0.7:502/255", as a map.
-std::string node_at(Connection connection, std::uint8_t unit) {
-  connection.unit = unit;
-  return printable(node_address_text(connection));
+  return printable(as_argument(node_address_text(connection)));
 }
 
 std::string units_text(const Findings& findings, const Connection& connection) {
@@ -52,14 +46,14 @@ std::string units_text(const Findings& findings, const Connection& connection) {
   return text;
 }
 
-std::string identification_text(const Findings& findings, const Connection& connection) {
+std::string identification_text(const Findings& findings) {
   std::string text;
   for (const auto& [id, value] : findings.identification)
     text += fmt::format("  {:<20} {}\n", scan::object_name(id), printable(value));
   text = text.empty() ? "identification: none (FC 43/14)\n" : "identification:\n" + text;
   if (findings.node)
-    text += fmt::format("an OpenCoupler node: it serves its map, see `coupler dump {}`\n",
-                        node_at(connection, *findings.unit));
+    text += fmt::format("an OpenCoupler node, which serves its map: fingerprint {}\n",
+                        fingerprint_text(findings.node->fingerprint));
   if (findings.recognition)
     text += fmt::format("a {}, by its own registers: {}; `preset: {}`\n", findings.recognition->kind,
                         channels_text(*findings.recognition), findings.recognition->preset);
@@ -155,7 +149,8 @@ bool shows_nothing(const Findings& findings) {
 
 std::string probe_report(const Findings& findings, const scan::Task& task, const Connection& connection,
                          const std::vector<scan::Match>& matches) {
-  std::string text = units_text(findings, connection) + identification_text(findings, connection);
+  if (findings.node && findings.tables.empty()) return identification_text(findings);
+  std::string text = units_text(findings, connection) + identification_text(findings);
   bool untried = false;
   for (const TableFindings& table : findings.tables) {
     text += table_text(table);

@@ -149,7 +149,6 @@ void add_record(Program& program, Exit& exit) {
       "record",
       "Write every change of a device's points to a file, with its time, until Ctrl-C. Never writes to it.");
   const auto arguments = std::make_shared<Arguments>();
-  arguments->device.may_be_unknown = true;
   add_device_options(command, arguments->device);
   command
       .add_option("-o,--out", arguments->out,
@@ -166,7 +165,7 @@ void add_record(Program& program, Exit& exit) {
   command.add_flag("--sync", arguments->sync,
                    "After each write wait until the disk has it, for machines that lose their power");
   command.footer(
-      "Example:\n  coupler record press.yaml -o press.jsonl\n"
+      "Example:\n  coupler record press.yaml -o press.jsonl\n  coupler record 192.168.1.20\n"
       "To play it: coupler-node --sim --replay press.jsonl\n"
       "Exit status 3: the device was never reached, or what came last could not be written.");
   command.callback([arguments, &exit] { exit = run(*arguments); });

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -9,25 +13,19 @@
 #include "coupler/tools/commands.hpp"
 #include "coupler/tools/modbus_client.hpp"
 #include "coupler/tools/node_status.hpp"
-#include "coupler/tools/tls_argument.hpp"
+#include "coupler/tools/place_argument.hpp"
 
 namespace coupler::tools {
 namespace {
 
 struct Arguments {
-  std::string host;
+  std::vector<std::string> hosts;
   TlsTexts tls;
   double timeout = 1;  ///< s
   bool json = false;
 };
 
-Exit run(const Arguments& arguments) {
-  const std::string address = node_argument(arguments.host);
-  const auto where = parse_node_address(address);
-  if (!where) return complain("status", bad_call, where.error().what, where.error().remedy);
-  Connection connection = found_at({}, *where).connection;
-  if (const auto problem = use_tls_options(*where, arguments.tls, connection.tls))
-    return complain("status", *problem);
+Exit ask(Connection connection, const Arguments& arguments) {
   connection.timeout = std::chrono::milliseconds(static_cast<long>(arguments.timeout * 1000));
   host::Link link = host::make_link(connection);
   const NodeStatus status = read_status(
@@ -48,6 +46,19 @@ Exit run(const Arguments& arguments) {
   return ok;
 }
 
+/// The devices in turn. A place that is wrong is told before any of them is asked.
+Exit run(const Arguments& arguments) {
+  std::vector<Place> places;
+  for (const std::string& host : arguments.hosts) {
+    auto place = get_place(host, arguments.tls);
+    if (!place) return complain("status", place.error());
+    places.push_back(*std::move(place));
+  }
+  Exit exit = ok;
+  for (const Place& place : places) exit = std::max(exit, ask(place.connection, arguments));
+  return exit;
+}
+
 }  // namespace
 
 void add_status(Program& program, Exit& exit) {
@@ -55,21 +66,17 @@ void add_status(Program& program, Exit& exit) {
       "status",
       "Show what a node says about itself: machine, map, watchdog, statistics. Never writes to it.");
   const auto arguments = std::make_shared<Arguments>();
-  command
-      .add_option("HOST", arguments->host,
-                  "HOST[:PORT][/UNIT], with tcp:// or tls:// in front or not, or a serial port as "
-                  "/dev/ttyUSB0[/UNIT]")
-      .required()
-      .type_name("");
+  command.add_option("HOST", arguments->hosts, place_help).required().type_name("");
   command.add_option("--timeout", arguments->timeout, "Longest wait for an answer, in seconds")
       .in_range(0.01, 60.0)
       .show_default()
       .type_name("S");
-  command.add_flag("--json", arguments->json, "One JSON object on standard output, for scripts");
+  command.add_flag("--json", arguments->json,
+                   "One JSON object on standard output for each device, on a line of its own, for scripts");
   add_tls_options(command, arguments->tls);
   command.footer(
-      "Example:\n  coupler status raspberrypi\n  coupler status 10.0.0.7:1502/1 --json\n"
-      "Exit status 1: a foreign coupler; 3: no answer.");
+      "Example:\n  coupler status raspberrypi\n  coupler status 10.0.0.7:1502/1 10.0.0.8 --json\n"
+      "Exit status 1: a foreign coupler; 3: no answer; of several devices the highest one counts.");
   command.callback([arguments, &exit] { exit = run(*arguments); });
 }
 

@@ -31,18 +31,13 @@ void say(std::string_view command, const std::string& text) {
   fmt::print(stderr, "coupler {}: {}\n", command, printable_lines(text));
 }
 
-/// Returns the place as an argument that can be typed in a shell.
-std::string as_argument(const std::string& place) {
-  constexpr std::string_view tcp = "tcp://";
-  if (place.find_first_of("?&") != std::string::npos) return fmt::format("'{}'", place);
-  return place.rfind(tcp, 0) == 0 ? place.substr(tcp.size()) : place;
-}
-
-/// Scans the device. If it refuses the connection, tries again: over TCP it has just been reached.
+/// Scans the device. If it refuses a connection over TCP, tries again: it has just been reached.
 scan::Findings look(ProbeCall& call) {
   scan::Findings findings = look_at_each_line(call);
   for (const milliseconds pause : pauses) {
-    if (!findings.broke_off || findings.requests > 0 || has_remedy(*findings.broke_off)) break;
+    if (!findings.broke_off || findings.requests > 0 || has_remedy(*findings.broke_off) ||
+        call.connection.serial.present())
+      break;
     std::this_thread::sleep_for(pause);
     findings = look_at_each_line(call);
   }
@@ -58,9 +53,8 @@ tl::expected<FoundMap, Failure> load(const std::string& text) {
   return fail(failed, why, "write a map from the device's manual");
 }
 
-tl::expected<FoundMap, Failure> found_node(std::string_view command, MapPtr map, Connection where) {
+tl::expected<FoundMap, Failure> found_node(std::string_view command, MapPtr map, const Connection& where) {
   say(command, place_text(where) + " is a node that serves its map");
-  where.tls = {};
   return FoundMap{std::move(map), where};
 }
 
@@ -74,7 +68,7 @@ tl::expected<FoundMap, Failure> map_of_node(std::string_view command, Connection
 tl::expected<FoundMap, Failure> map_by_a_scan(std::string_view command, const std::string& place,
                                               ProbeCall& call) {
   const std::string device = place_text(call.connection);
-  call.task.ends_when_known = true;
+  call.task.ends = scan::Task::Ends::when_known;
   const scan::Findings findings = look(call);
   if (findings.broke_off) return tl::make_unexpected(why_unreachable(*findings.broke_off, call.connection));
   // Ctrl-C ends the search, and any other signal the program.
@@ -104,28 +98,21 @@ tl::expected<FoundMap, Failure> map_by_a_scan(std::string_view command, const st
 
 }  // namespace
 
-tl::expected<FoundMap, Failure> map_of_unknown_device(std::string_view command, const std::string& place,
-                                                      const TlsTexts& tls) {
-  ProbeArguments arguments;
-  arguments.host = place;
-  arguments.tls = tls;
-  auto call = understand(arguments, place);
+tl::expected<FoundMap, Failure> map_of_unknown_device(std::string_view command, const Place& place) {
+  auto call = understand({}, place);
   if (!call) return tl::make_unexpected(std::move(call.error()));
-  const auto where = parse_node_address(place);
-  Connection connection = found_at({}, *where).connection;
-  connection.tls = call->connection.tls;
   // At a serial port its rate and parity have to be found first.
-  if (!connection.serial.present()) {
-    auto served = fetch_map_if_node(connection);
+  if (!place.connection.serial.present()) {
+    auto served = fetch_map_if_node(place.connection);
     if (!served) return tl::make_unexpected(std::move(served.error()));
-    if (*served != nullptr) return found_node(command, std::move(*served), connection);
+    if (*served != nullptr) return found_node(command, std::move(*served), place.connection);
   }
   say(command,
       fmt::format(
           "{}: finding out what it answers to, which may take minutes; Ctrl-C ends that, and what was "
           "found by then is used",
-          place_text(connection)));
-  return map_by_a_scan(command, place, *call);
+          place_text(place.connection)));
+  return map_by_a_scan(command, *place.text, *call);
 }
 
 }  // namespace coupler::tools

@@ -136,7 +136,7 @@ TEST_F(RecognitionTest, A_register_that_is_missing_ends_it) {
 
 TEST_F(RecognitionTest, A_scan_that_looks_for_it_needs_no_more) {
   Task task;
-  task.ends_when_known = true;
+  task.ends = Task::Ends::when_known;
   const Findings findings = scan(task, device_, clock_, onlooker_);
   EXPECT_TRUE(findings.recognition.has_value());
   EXPECT_TRUE(findings.is_complete);

@@ -40,7 +40,7 @@ class Cli(unittest.TestCase):
 @unittest.skipIf(os.environ["LIVE"] == "1", "built with libmodbus")
 class WithoutLibmodbus(Cli):
     def test_commands_that_need_a_device_say_what_to_install(self):
-        for command in "dump", "pin", "probe", "record", "status":
+        for command in "dump", "fetch", "pin", "probe", "record", "status":
             with self.subTest(command):
                 done = self.coupler(command, "cell.yaml", "--at", "localhost")
                 self.assertEqual(done.returncode, 3)

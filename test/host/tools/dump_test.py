@@ -35,19 +35,23 @@ class Dump(unittest.TestCase):
     def test_a_map_without_address_needs_at(self):
         self.refused(2, "cell.yaml does not say where the device is; give --at HOST[:PORT][/UNIT]", "cell.yaml")
 
-    def test_a_host_in_place_of_a_file_is_told_how_a_node_is_named(self):
+    def test_what_is_neither_a_file_nor_a_device_is_told_as_both(self):
+        with socket.socket() as place:
+            place.bind(("127.0.0.1", 0))  # not listening
+            port = place.getsockname()[1]
+            self.refused(3, f"localhost:{port}: error: no such file, and as a device: localhost port {port}: Connection refused; ",
+                         f"localhost:{port}")
+            self.refused(3, f"127.0.0.1:{port}: error: 127.0.0.1 port {port}: Connection refused; ", f"127.0.0.1:{port}")
+        self.refused(2, "cell:0: error: no such file, and as a device: the port '0' is not 1 to 65535; write tcp://", "cell:0")
+        self.refused(2, "a b: error: no such file, and as a device: the host 'a b' is not a host name; ", "a b")
+        self.refused(3, "/dev/ttyUSB77: error: /dev/ttyUSB77: ", "/dev/ttyUSB77")
+
+    def test_what_has_the_name_of_a_file_is_no_device(self):
         missing = "error: the file cannot be read: No such file or directory; give the path of a map"
-        for place, node in (("127.0.0.1:1502", "tcp://127.0.0.1:1502"), ("press.local", "tcp://press.local"),
-                            ("/dev/ttyUSB77", "rtu:/dev/ttyUSB77")):
-            self.refused(1, f"{place}: {missing}; for the map of a node write {node}\n", place)
-        for end in os.openpty():
-            self.addCleanup(os.close, end)
-        line = os.ttyname(end)
-        device = "error: it is a device, not a file; give the path of a map, or - for standard input"
-        self.refused(1, f"{line}: {device}; for the map of a node write rtu:{line}\n", line)
-        self.refused(1, f"/dev/null: {device}\n", "/dev/null")
-        for file in ("press.yaml", "./press", "a b"):
+        for file in ("press.yaml", "press.yml", "press.json", "./press", "maps/press", ""):
             self.refused(1, f"{file}: {missing}\n", file)
+        device = "error: it is a device, not a file; give the path of a map, or - for standard input"
+        self.refused(1, f"/dev/null: {device}\n", "/dev/null")
 
     def test_a_wrong_place_is_said(self):
         self.refused(2, "--at: the port '0' is not 1 to 65535; write tcp://HOST", "cell.yaml", "--at", "cell:0")
@@ -87,7 +91,7 @@ class Dump(unittest.TestCase):
     def test_help_has_an_example(self):
         done = self.dump("--help")
         self.assertEqual(done.returncode, 0)
-        self.assertIn("Example:\n  coupler dump tcp://raspberrypi\n", done.stdout)
+        self.assertIn("Example:\n  coupler dump raspberrypi\n", done.stdout)
 
 
 unittest.main()

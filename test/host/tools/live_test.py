@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""tcp://HOST:PORT in place of a map: COUPLER asks NODE, a program that serves a map, and devices that serve none."""
+"""HOST:PORT in place of a map: COUPLER asks NODE, a program that serves a map, and devices that serve none."""
 import json
 import os
 import socket
@@ -172,11 +172,77 @@ class ANode(Live):
         self.assertIn("map-rate-changed", done.stdout)
         self.assertNotIn("verify-changed", done.stdout)
 
+    def test_is_the_same_however_its_place_is_written(self):
+        url = self.node()
+        bare = url.removeprefix("tcp://")
+        for place in (bare, bare.replace("127.0.0.1", "localhost")):
+            for command in (["check"], ["plan"], ["diff", "cell.yaml"], ["export", "--to", "csv"],
+                            ["generate", "--vectors", "--out", "-"]):
+                with self.subTest(place=place, command=command):
+                    by_url, by_host = (self.coupler(*command, node) for node in (url, place))
+                    self.assertEqual((by_host.returncode, by_host.stderr.replace(place, url)), (0, by_url.stderr))
+                    self.assertEqual(by_host.stdout.replace(place, url), by_url.stdout)
+
+    def test_gives_way_to_a_file_of_that_name(self):
+        place = self.node(MAP.replace("cell", "served")).removeprefix("tcp://127.0.0.1:").removesuffix("/7")
+        (self.folder / place).write_text(MAP, encoding="utf-8")
+        self.assertIn("ok: cell, ", self.coupler("check", place).stdout)
+
     def test_exports_its_own_address(self):
         node = self.node()
         done = self.coupler("export", node, "--to", "telegraf")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn(node.removesuffix("/7"), done.stdout)
+
+
+class Fetch(Live):
+    def test_saves_the_map_byte_for_byte(self):
+        text = "# Größe\r\n" + SECURITY + MAP + "\n\n"
+        node = self.node(text)
+        served = (self.folder / "cell.yaml").read_bytes()
+        for place, option in ((node, "-o"), (node.removeprefix("tcp://"), "--out")):
+            done = self.coupler("fetch", place, option, "saved.yaml", "--force")
+            self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
+            self.assertEqual((self.folder / "saved.yaml").read_bytes(), served)
+        said = done.stderr.splitlines()
+        fingerprint = json.loads(self.coupler("check", "--json", node).stdout)["fingerprint"]
+        self.assertEqual(said[0], f"saved.yaml: ok: cell, 2 points (1 coil, 1 input register), fingerprint {fingerprint}")
+        place = node.removeprefix("tcp://")
+        self.assertEqual(said[1], f"Next: `coupler dump saved.yaml --at {place}` shows its values; after a change "
+                                  f"`coupler diff {place} saved.yaml` says what it means")
+
+    def test_writes_to_standard_output(self):
+        node = self.node()
+        for out in ([], ["-o", "-"]):
+            done = self.coupler("fetch", node, *out)
+            self.assertEqual((done.returncode, done.stdout), (0, MAP))
+            self.assertEqual(len(done.stderr.splitlines()), 1)
+
+    def test_replaces_no_file(self):
+        done = self.coupler("fetch", "tcp://127.0.0.1:1", "-o", "cell.yaml")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("cell.yaml already exists; name another file with --out, or replace it with --force", done.stderr)
+        self.assertIn("nowhere is not a folder", self.coupler("fetch", "tcp://127.0.0.1:1", "-o", "nowhere/a.yaml").stderr)
+
+    def test_saves_nothing_of_a_damaged_map(self):
+        port = int(self.node().split(":")[2].split("/")[0])
+        relay = Relay(port, [(b"lamp", b"limp")])
+        done = self.coupler("fetch", f"127.0.0.1:{relay.port}/7", "-o", "saved.yaml")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertIn("the node's map cannot be used: checksum ", done.stderr)
+        self.assertFalse((self.folder / "saved.yaml").exists())
+
+    def test_of_another_device_says_how_to_get_a_map(self):
+        done = self.coupler("fetch", f"127.0.0.1:{Foreign(bytes([0x84, 2])).port}")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertRegex(done.stderr, r"^coupler fetch: error: tcp://127.0.0.1:\d+/1: a foreign coupler, which serves no map; "
+                                      r"`coupler probe 127.0.0.1:\d+/1 --out FILE` drafts one")
+
+    def test_of_a_map_is_a_wrong_call(self):
+        for command in ("fetch", "probe", "status"):
+            done = self.coupler(command, "cell.yaml")
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn("'cell.yaml' is a map, and this asks a device; give HOST[:PORT][/UNIT]", done.stderr)
 
 
 class NoNode(Live):
@@ -188,7 +254,11 @@ class NoNode(Live):
 
     def test_a_foreign_coupler_has_no_map(self):
         said = self.refused(1, f"tcp://127.0.0.1:{Foreign(bytes([0x84, 2])).port}")
-        self.assertIn("foreign coupler", said)
+        self.assertRegex(said, r"foreign coupler, which serves no map; `coupler probe 127.0.0.1:\d+/1 --out FILE` drafts one")
+
+    def test_a_device_that_does_not_like_the_question_may_be_anything(self):
+        self.assertRegex(self.refused(3, f"tcp://127.0.0.1:{Foreign(None).port}"),
+                         r"; if it is none, `coupler probe 127.0.0.1:\d+/1` says what it answers to\n")
 
     def test_a_device_that_hangs_up_is_a_failed_network(self):
         self.refused(3, f"tcp://127.0.0.1:{Foreign(None).port}")

@@ -45,7 +45,8 @@ void look_into_unit(const Task& task, Prober& prober, ScanProgress& progress, Fi
   findings.identification = read_identification(prober);
   findings.node = read_node_identity(prober);
   if (!findings.node) findings.recognition = recognise(prober);
-  if (task.ends_when_known && (findings.node || findings.recognition)) {
+  if ((findings.node && task.ends != Task::Ends::after_tables) ||
+      (findings.recognition && task.ends == Task::Ends::when_known)) {
     findings.is_complete = true;
     return;
   }

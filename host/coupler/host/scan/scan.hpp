@@ -19,8 +19,9 @@ struct Task {
   modbus::Range window = modbus::Range::of(0, 10000);  ///< of each table
   std::uint32_t stride = 16;  ///< where blocks are refused, one address in so many is tried; 1: all
   double rate = 20;           ///< requests a second
-  bool ends_when_known =
-      false;  ///< the tables of a node and of a coupler that says what it has are left alone
+  /// When a scan is over: when all tables are done, or before them at a node of this project, or also at a
+  /// coupler that says what it has.
+  enum class Ends { after_tables, at_node, when_known } ends = Ends::after_tables;
 };
 
 struct Findings {
