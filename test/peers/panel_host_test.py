@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""`coupler panel HOST` and `coupler record HOST` need no map: a node gives its own, a WAGO coupler is recognised by its
+"""`coupler panel HOST`, `record HOST` and `dump HOST` need no map: a node gives its own, a WAGO coupler is recognised by its
 registers, of anything else there is a draft. Nothing is written to any of them.
 
     panel_host_test.py NODE COUPLER MAP
@@ -108,6 +108,16 @@ def a_wago_is_recorded(folder, checks):
         checks.equal("record: exit status", recorder.end(), 0)
 
 
+def a_wago_is_dumped(checks):
+    with a_wago() as device:
+        done = subprocess.run([COUPLER, "dump", f"127.0.0.1:{device.port}", "--points", "output_*", "--json"],
+                              capture_output=True, text=True, timeout=peer.PATIENCE)
+    checks.equal("dump: exit status", done.returncode, 0)
+    checks.equal("dump: it says what it is", " is a WAGO " in done.stderr, True)
+    checks.equal("dump: points", [point["point"] for point in json.loads(done.stdout)["points"]],
+                 [f"output_{n}" for n in range(1, 9)])
+
+
 def anything_else_has_a_draft(checks):
     """It has all that is looked at, which costs few requests."""
     device = foreign_server.Device({table: {at: 0 for at in range(10000)} for table in
@@ -198,6 +208,7 @@ def main():
                     pool.submit(a_wago_is_recognised, checks),
                     pool.submit(a_wago_has_a_draft, folder, checks),
                     pool.submit(a_wago_is_recorded, folder, checks),
+                    pool.submit(a_wago_is_dumped, checks),
                     pool.submit(a_node_gives_its_map, node, map_file, checks),
                     pool.submit(who_is_not_there_is_told, checks),
                     pool.submit(ctrl_c_ends_the_search_and_shows_what_was_found, checks),
