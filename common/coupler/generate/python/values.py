@@ -125,6 +125,18 @@ def _bytes(words: list[int], order: str) -> bytes:
     return struct.pack(f">{len(words)}H", *_reordered(words, order))
 
 
+def _shortest(number: float) -> float:
+    """Returns 0.1 for the REAL that Python reads as 0.10000000149011612: the fewest digits that are the same REAL."""
+    for digits in range(1, 10):  # nine are always enough
+        short = float(f"{number:.{digits}g}")
+        try:
+            if struct.pack(">f", short) == struct.pack(">f", number):
+                return short
+        except OverflowError:
+            pass  # the greatest REAL with so few digits is beyond it
+    return number  # a NaN with bits of its own
+
+
 @dataclass(frozen=True)
 class Spec:
     """A point as the map describes it. Addresses are zero-based."""
@@ -225,8 +237,30 @@ class Spec:
         raw = self._raw(words)
         if self.scaled:
             gain = self.gain * 10.0 ** power if power >= 0 else self.gain / 10.0 ** -power
-            return float(raw) * gain + self.offset
+            return self._without_last_digits(float(raw) * gain + self.offset, raw, gain)
+        if self.type == "REAL":
+            return _shortest(raw)
         return raw if self._name_of(raw) is None else self._name_of(raw)
+
+    def _without_last_digits(self, value: float, raw: int | float, gain: float) -> float:
+        """Returns 72.6 for 72.60000000000001, as `coupler dump` does: the digits behind the fifteenth come from the
+        multiplication, unless it takes them to tell the raw number from others."""
+        short = float(f"{value:.15g}")
+        same = math.isfinite(short) and self._nearest_raw(short, gain) == raw
+        return short if same else value
+
+    def _nearest_raw(self, value: float, gain: float) -> int | float | None:
+        """The raw number that is published as the value, or as one as near to it as can be; None if that is out of range."""
+        letter = _LETTERS[self.type]
+        least, most = (float(end) for end in self._ends(letter))
+        raw = (value - self.offset) / gain
+        if letter in "fd":
+            return struct.unpack(">" + letter, struct.pack(">" + letter, raw))[0] if least <= raw <= most else None
+        # The greatest number of 64 bits has no double: `most` is then the first one beyond.
+        if raw >= most + 0.5 or (raw <= least - 0.5 and raw != least) or math.isnan(raw):
+            return None
+        whole = int(raw)
+        return whole + (1 if raw - whole >= 0.5 else -1 if raw - whole <= -0.5 else 0)  # half away from zero
 
     def _name_of(self, raw: int) -> Any:
         """A member of `names`, or None: the device may have values without a name."""
@@ -314,7 +348,7 @@ class Spec:
         return (-(1 << bits - 1), (1 << bits - 1) - 1) if letter.islower() else (0, (1 << bits) - 1)
 
     def _unscaled(self, letter: str, number: int | float) -> int | float:
-        """The raw number whose published value is the nearest."""
+        """The raw number of a scaled value that is to be written."""
         try:
             value = float(number)
         except OverflowError:
@@ -324,16 +358,10 @@ class Spec:
         right = self.allowed if self._limited else "{:g} to {:g}".format(*ends) + self._unit()
         if math.isnan(value):
             self.refuse(f"not a number; send {right}")
-        raw = (value - self.offset) / self.gain
-        half = 0.0 if letter in "fd" else 0.5
-        # The greatest number of 64 bits has no double: `most` is then the first one beyond.
-        above = raw > most if letter in "fd" else raw >= most + half
-        if above or (raw <= least - half and raw != least):
+        raw = self._nearest_raw(value, self.gain)
+        if raw is None:
             self.refuse(f"{value:g}{self._unit()} is out of range; send {right}")
-        if letter in "fd":
-            return raw
-        whole = int(raw)
-        return whole + (1 if raw - whole >= 0.5 else -1 if raw - whole <= -0.5 else 0)  # half away from zero
+        return raw
 
     def _check_allowed(self, words: list[int]) -> None:
         """As what the registers would hold, so that 21.7 is not above `max: 21.7` of a REAL."""
