@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The client in Python: connecting, comparing maps, and devices that do not do their part."""
+import errno
 import socket
 import sys
 import threading
@@ -37,12 +38,33 @@ class Connection(OfADevice):
         self.device.unmapped = []  # and one that answers with something else
         self.assertTrue(self.connected().online)
 
-    def test_no_device_is_an_error_that_names_the_place(self):
+    def test_no_device_is_an_error_that_names_the_place_and_has_the_number_of_the_reason(self):
         press = self.press()
         with socket.socket() as nobody_listens:
             nobody_listens.bind(("127.0.0.1", 0))
             press.port = nobody_listens.getsockname()[1]
-            self.assertIn(f"127.0.0.1 port {press.port};", self.raises("NotConnected", press.connect))
+            with self.assertRaises(ConnectionError) as caught:
+                press.connect()
+        error = caught.exception
+        self.assertIs(type(error), self.module.NotConnected)
+        self.assertIn(f"127.0.0.1 port {press.port}: Connection refused; check", str(error))
+        self.assertEqual(error.errno, errno.ECONNREFUSED)
+        self.assertIsInstance(error.__cause__, ConnectionRefusedError)
+
+    def test_a_device_that_accepts_no_connection_in_time_is_timed_out(self):
+        press = self.press()
+        with mock.patch("socket.create_connection", side_effect=TimeoutError("timed out")):
+            with self.assertRaises(self.module.NotConnected) as caught:
+                press.connect()
+        self.assertEqual(caught.exception.errno, errno.ETIMEDOUT)
+
+    def test_what_has_no_number_has_its_cause(self):
+        press = self.press()
+        self.device.spoil = lambda pdu: bytes([pdu[0] | 0x80, 0x0B])
+        with self.assertRaises(self.module.NotConnected) as caught:
+            press.connect()
+        self.assertIsNone(caught.exception.errno)
+        self.assertIsInstance(caught.exception.__cause__, self.module.ExceptionReply)
 
     def test_verify_is_one_of_three_words(self):
         press = self.press(verify="require")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The client in Python of couplers that speak RTU, on a serial line and over TCP, against pymodbus' servers."""
+import errno
 import fcntl
 import os
 import pathlib
@@ -86,13 +87,15 @@ class OnALine(Rtu):
 
     def test_a_port_that_is_not_there_or_in_use_is_an_error_that_says_what_to_look_at(self):
         belt = self.belt(self.way, "/dev/none")
-        with self.assertRaisesRegex(self.module.NotConnected, "/dev/none.*check that the port is there"):
+        with self.assertRaisesRegex(self.module.NotConnected, "/dev/none.*check that the port is there") as caught:
             belt.connect()
+        self.assertEqual(caught.exception.errno, errno.ENOENT)
         belt.device = self.line.port
         with open(self.line.port, "rb", buffering=0) as held:
             fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            with self.assertRaisesRegex(self.module.NotConnected, "that nobody else uses it"):
+            with self.assertRaisesRegex(self.module.NotConnected, "that nobody else uses it") as caught:
                 belt.connect()
+            self.assertEqual(caught.exception.errno, errno.EAGAIN)
         belt.connect()
         with self.assertRaises(serial.SerialException):
             serial.Serial(self.line.port, exclusive=True)

@@ -105,14 +105,16 @@ class Values(OfADevice):
         module = self.module
         errors = [kind("why") for kind in (module.CouplerError, module.NotConnected, module.OtherMap, module.Lost,
                                            module.NotTaken, module.NoValue, module.Refused)]
-        errors += [module.ExceptionReply(2), module.ExceptionReply(4, "speed: ")]
+        errors += [module.ExceptionReply(2), module.ExceptionReply(4, "speed: "), module.NotConnected("why", 111)]
         named = {kind for kind in vars(module).values() if isinstance(kind, type) and issubclass(kind, module.CouplerError)}
         self.assertEqual({type(error) for error in errors}, named)
         for error in errors:
             for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
                 again = pickle.loads(pickle.dumps(error, protocol))
                 self.assertIs(type(again), type(error))
-                self.assertEqual((str(again), getattr(again, "code", None)), (str(error), getattr(error, "code", None)))
+                for name in ("code", "errno"):
+                    self.assertEqual(getattr(again, name, None), getattr(error, name, None))
+                self.assertEqual(str(again), str(error))
 
     def test_a_scale_is_that_of_python(self):
         """test/golden/make-scale: halves, ends of types, numbers without a double."""

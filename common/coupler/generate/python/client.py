@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Behind values.py in a generated file, and before what the map makes.
+# Behind link.py in a generated file, and before what the map makes.
 
 
 class Point:
@@ -31,42 +31,25 @@ class Output(Input[T], Command[T]):
     """A point that can be read and written."""
 
 
-@functools.lru_cache(maxsize=None)
-def _names_of_unit(method: str) -> tuple[str, ...]:
-    """pymodbus calls the unit id `slave` at first and `device_id` since 3.10. Where a call takes any name (FC 22 of the first
-    releases) it is `unit` or `slave`, and the other one has no meaning."""
-    parameters = inspect.signature(getattr(_ModbusTcpClient, method)).parameters
-    return tuple(name for name in ("device_id", "slave") if name in parameters) or ("unit", "slave")
-
-
-class Client:
+class Client(_Link):
     """The connection to one coupler."""
 
     fingerprint: int
     # Requests that read every point: table, address, count, names.
     _plan: tuple[tuple[str, int, int, tuple[str, ...]], ...] = ()
-    _request_gap = 0.0    # seconds between a reply and the next request
-    _connect_delay = 0.0  # seconds between connecting and the first request
 
     def __init__(self, address: str, port: int, unit: int, timeout: float, verify: Verify | str) -> None:
-        self.address, self.port, self.unit, self.timeout = address, port, unit, timeout
+        super().__init__(address, port, unit, timeout)
         self.verify = Verify(verify)
         self._points: dict[str, Any] = {}
         self._lock = threading.RLock()
         self._wanted = False
-        self._modbus: Any = None
-        self._next_request = 0.0
         self._one_by_one: set[tuple[str, ...]] = set()  # the device rejects these in one request
 
     @property
     def points(self) -> dict[str, Any]:
         """All points by their names in the map."""
         return dict(self._points)
-
-    @property
-    def online(self) -> bool:
-        """There is a connection, as far as is known, and the maps fit."""
-        return self._modbus is not None
 
     def connect(self) -> None:
         """Connects, and compares the maps."""
@@ -197,34 +180,13 @@ class Client:
             return
         if not self._wanted:
             raise NotConnected("not connected; call connect() first, or use the client in a `with` statement")
-        try:
-            modbus = self._new_modbus()
-            if hasattr(modbus, "params"):
-                modbus.params.timeout = self.timeout  # 3.0 cuts it to whole seconds
-            is_open = modbus.connect()
-        except (OSError, ValueError) as error:
-            raise NotConnected(f"cannot connect to {self._place()}: {error}; check {self._advice()}") from error
-        if not is_open:
-            raise NotConnected(f"cannot connect to {self._place()}; check {self._advice()} (the log of pymodbus has the "
-                               "reason)")
-        self._modbus = modbus
-        self._next_request = max(self._next_request, time.monotonic() + self._connect_delay)
+        self._open()
         self._one_by_one.clear()
         try:
             self._compare_maps()
         except BaseException:
             self._drop()
             raise
-
-    def _new_modbus(self) -> Any:
-        """No repeated requests: pymodbus would connect for them by itself, and nobody would compare the maps."""
-        return _ModbusTcpClient(self.address, port=self.port, timeout=self.timeout, retries=0)
-
-    def _place(self) -> str:
-        return f"{self.address} port {self.port}"
-
-    def _advice(self) -> str:
-        return "that the device runs, and its address and port"
 
     def _node_address(self) -> str:
         host = f"[{self.address}]" if ":" in self.address else self.address
@@ -257,71 +219,3 @@ class Client:
     def _silence(self, why: str) -> str:
         return (f"{why}; check that the device runs, and that 'unit' is its unit id. If it is a foreign coupler that ignores "
                 "addresses it does not have, give verify=Verify.OFF")
-
-    def _ask(self, method: str, function: int, **request: Any) -> Any:
-        """Makes a request of pymodbus and waits for the answer, for the timeout at most."""
-        time.sleep(max(0.0, self._next_request - time.monotonic()))
-        call = getattr(self._modbus, method)
-        began = time.monotonic()
-        try:
-            # A copy: pymodbus 3.9 fills up the list of bits.
-            reply = call(**copy.deepcopy(request), **{name: self.unit for name in _names_of_unit(method)})
-        except BaseException as error:
-            # Its late answer must never be taken for that to the next request.
-            self._drop()
-            if not isinstance(error, Exception):
-                raise
-            raise self._lost(began, error) from error  # whatever pymodbus ran into
-        self._next_request = time.monotonic() + self._request_gap
-        if isinstance(reply, Exception):
-            self._drop()
-            raise self._lost(began, reply)
-        if not self._answers(reply, function, request):
-            self._drop()
-            raise Lost("malformed reply: the reply to another request")
-        code = getattr(reply, "exception_code", 0)
-        if code:
-            if code in _UNIT_AWAY:
-                self._drop()  # another unit may come back: the maps are compared again
-            raise ExceptionReply(code)
-        if reply.isError():
-            self._drop()
-            raise self._lost(began, reply)
-        return reply
-
-    def _answers(self, reply: Any, function: int, request: dict[str, Any]) -> bool:
-        """The reply is that to this request. pymodbus does not see to it: 3.0 compares no ids, and no release the rest."""
-        if not self._has_id_of_request(reply):
-            return False
-        if reply.function_code & 0x7F != function:
-            return False
-        if reply.function_code & 0x80:
-            return True  # an exception says no more
-        if function in (1, 2):
-            return len(reply.bits) == (request["count"] + 7) // 8 * 8
-        if function in (3, 4):
-            return len(reply.registers) == request["count"]
-        if reply.address != request["address"]:
-            return False
-        if function in (15, 16):
-            return reply.count == len(request["values"])
-        if function == 22:
-            return (reply.and_mask, reply.or_mask) == (request["and_mask"], request["or_mask"])
-        # 5 and 6; later releases have no `value`.
-        values = [reply.value] if hasattr(reply, "value") else reply.bits if function == 5 else reply.registers
-        return list(values) == [request["value"]]
-
-    def _has_id_of_request(self, reply: Any) -> bool:
-        transaction = getattr(self._modbus, "transaction", None)
-        asked = getattr(transaction, "tid", getattr(transaction, "next_tid", None))  # later releases have the second
-        return asked is None or reply.transaction_id == asked
-
-    def _lost(self, began: float, why: Any) -> Lost:
-        if time.monotonic() - began >= 0.99 * self.timeout:
-            return Lost(f"no reply within {1000 * self.timeout:.0f} ms")
-        return Lost(f"connection lost: {why}")
-
-    def _drop(self) -> None:
-        modbus, self._modbus = self._modbus, None
-        if modbus is not None:
-            modbus.close()

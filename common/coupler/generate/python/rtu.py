@@ -11,7 +11,7 @@ class RtuClient(Client):
             framer = type(framer).RTU
         else:  # releases before 3.6 take a class
             from pymodbus.transaction import ModbusRtuFramer as framer
-        return _ModbusTcpClient(self.address, port=self.port, timeout=self.timeout, retries=0, framer=framer)
+        return self._on_socket(framer=framer)
 
     def _node_address(self) -> str:
         return "rtu+" + super()._node_address()
@@ -55,16 +55,14 @@ class SerialClient(RtuClient):
                                "install pyserial`") from missing
         modbus = ModbusSerialClient(self.device, baudrate=self.baud, parity=self.parity[0].upper(), stopbits=self.stop_bits,
                                     bytesize=8, timeout=self.timeout, retries=0)
-        connect = modbus.connect
-
-        def open_port() -> bool:
-            if not connect():
-                return False
-            modbus.socket.exclusive = True  # some releases share the port
-            if self.rs485:
-                modbus.socket.rs485_mode = serial.rs485.RS485Settings()
-            return True
-        modbus.connect = open_port
+        if hasattr(modbus, "params"):
+            modbus.params.timeout = self.timeout  # 3.0 cuts it to whole seconds
+        if not modbus.connect():
+            serial.Serial(self.device, exclusive=True).close()  # raises the reason, which pymodbus keeps to itself
+            raise OSError("the port cannot be opened; the log of pymodbus has the reason")
+        modbus.socket.exclusive = True  # some releases share the port
+        if self.rs485:
+            modbus.socket.rs485_mode = serial.rs485.RS485Settings()
         return modbus
 
     def _place(self) -> str:
