@@ -64,8 +64,9 @@ std::string python_literal(std::string_view text) {
   return out + '"';
 }
 
-std::string python_type(const Point& point) {
-  std::string one = "int";
+/// `member`: the name of the point in Python. A device may have values that the map gives no name.
+std::string python_type(const Point& point, std::string_view member) {
+  std::string one = point.values.empty() ? "int" : fmt::format("values.{} | int", member);
   switch (point.format.type) {
     case Type::BOOL: one = "bool"; break;
     case Type::STRING: one = "str"; break;
@@ -258,7 +259,7 @@ std::string python_client(const Map& map, const Provenance& provenance) {
     const Point& point = map.points[i];
     const std::string_view kind = point_class(point.access);
     points += fmt::format("        #: {}\n        self.{}: {}[{}] = {}(self, Spec(\n            {}))\n",
-                          printable(documentation(point)), names[i], kind, python_type(point), kind,
+                          printable(documentation(point)), names[i], kind, python_type(point, names[i]), kind,
                           spec(map, point, names[i]));
   }
   const Connection& connection = map.connection;

@@ -17,6 +17,7 @@ import copy
 import enum
 import errno
 import functools
+import importlib
 import inspect
 import logging
 import math
@@ -29,13 +30,14 @@ from dataclasses import dataclass
 from typing import Any, Generic, NoReturn, TypeVar
 
 try:
-    # Under a name of its own: the map `modbus_tcp` makes a class ModbusTcpClient.
-    from pymodbus.client import ModbusTcpClient as _ModbusTcpClient
+    # Not by `import`: some releases have types that a type checker reads, and others have none, which it complains of.
+    _ModbusTcpClient: Any = importlib.import_module("pymodbus.client").ModbusTcpClient
 except ImportError as missing:
     raise ImportError("pymodbus 3 or newer is needed; install it with `apt install python3-pymodbus` or `pip install "
                       "'pymodbus>=3'`") from missing
 
-T = TypeVar("T")
+T = TypeVar("T")                     # the type of a point's value
+C = TypeVar("C", bound="Client")
 _IntEnum = enum.IntEnum
 _log = logging.getLogger(__name__)
 
@@ -70,7 +72,8 @@ class NotConnected(CouplerError, ConnectionError):
 
     def __init__(self, why: str, number: int | None = None) -> None:
         super().__init__(why)
-        self.errno = number
+        given: Any = number  # type checkers may believe that `errno` is never None
+        self.errno = given
 
     def __reduce__(self) -> Any:  # for pickle, which leaves out `errno` otherwise
         return type(self), (self.args[0], self.errno)

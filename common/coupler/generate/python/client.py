@@ -16,7 +16,8 @@ class Input(Point, Generic[T]):
 
     def read(self) -> T:
         """Asks the device for the value. Raises NoValue if the device has none."""
-        return self._client._read_point(self.spec)
+        value: T = self._client._read_point(self.spec)
+        return value
 
 
 class Command(Point, Generic[T]):
@@ -73,7 +74,7 @@ class Client(_Link):
             specs = [self._points[name].spec for name in words]
             return {spec.name: spec.decode(words[spec.name], self._power_of(spec, words)) for spec in specs}
 
-    def __enter__(self: Any) -> Any:
+    def __enter__(self: C) -> C:
         self.connect()
         return self
 

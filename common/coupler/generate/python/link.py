@@ -105,13 +105,13 @@ class _Link:
         if reply.function_code & 0x80:
             return True  # an exception says no more
         if function in (1, 2):
-            return len(reply.bits) == (request["count"] + 7) // 8 * 8
+            return len(reply.bits) == int(request["count"] + 7) // 8 * 8
         if function in (3, 4):
-            return len(reply.registers) == request["count"]
+            return len(reply.registers) == int(request["count"])
         if reply.address != request["address"]:
             return False
         if function in (15, 16):
-            return reply.count == len(request["values"])
+            return len(request["values"]) == int(reply.count)
         if function == 22:
             return (reply.and_mask, reply.or_mask) == (request["and_mask"], request["or_mask"])
         # 5 and 6; later releases have no `value`.
@@ -121,7 +121,7 @@ class _Link:
     def _has_id_of_request(self, reply: Any) -> bool:
         transaction = getattr(self._modbus, "transaction", None)
         asked = getattr(transaction, "tid", getattr(transaction, "next_tid", None))  # later releases have the second
-        return asked is None or reply.transaction_id == asked
+        return asked is None or bool(reply.transaction_id == asked)
 
     def _lost(self, began: float, why: Any) -> Lost:
         if time.monotonic() - began >= 0.99 * self.timeout:

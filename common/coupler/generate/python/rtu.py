@@ -8,9 +8,10 @@ class RtuClient(Client):
     def _new_modbus(self) -> Any:
         framer: Any = inspect.signature(_ModbusTcpClient).parameters["framer"].default
         if isinstance(framer, enum.Enum):
-            framer = type(framer).RTU
+            kinds: Any = type(framer)
+            framer = kinds.RTU
         else:  # releases before 3.6 take a class
-            from pymodbus.transaction import ModbusRtuFramer as framer
+            framer = importlib.import_module("pymodbus.transaction").ModbusRtuFramer
         return self._on_socket(framer=framer)
 
     def _node_address(self) -> str:
@@ -20,7 +21,7 @@ class RtuClient(Client):
         """There is no transaction number, but the unit."""
         for name in ("dev_id", "slave_id", "unit_id"):  # pymodbus has changed its mind
             if hasattr(reply, name):
-                return getattr(reply, name) == self.unit
+                return bool(getattr(reply, name) == self.unit)
         return True
 
     def _ask(self, method: str, function: int, **request: Any) -> Any:
@@ -48,8 +49,9 @@ class SerialClient(RtuClient):
 
     def _new_modbus(self) -> Any:
         try:
-            from pymodbus.client import ModbusSerialClient
-            import serial.rs485
+            ModbusSerialClient: Any = importlib.import_module("pymodbus.client").ModbusSerialClient
+            serial: Any = importlib.import_module("serial")
+            rs485: Any = importlib.import_module("serial.rs485")
         except ImportError as missing:
             raise NotConnected("pyserial is needed for a serial line; install it with `apt install python3-serial` or `pip "
                                "install pyserial`") from missing
@@ -62,7 +64,7 @@ class SerialClient(RtuClient):
             raise OSError("the port cannot be opened; the log of pymodbus has the reason")
         modbus.socket.exclusive = True  # some releases share the port
         if self.rs485:
-            modbus.socket.rs485_mode = serial.rs485.RS485Settings()
+            modbus.socket.rs485_mode = rs485.RS485Settings()
         return modbus
 
     def _place(self) -> str:

@@ -116,7 +116,7 @@ class Spec:
         if math.isinf(self.fault_below) and math.isinf(self.fault_above):
             return False
         raw = self._raw(words)
-        return raw < self.fault_below or raw > self.fault_above
+        return bool(raw < self.fault_below or raw > self.fault_above)
 
     def _decode_one(self, words: list[int], power: int) -> Any:
         if self.type == "BOOL":
