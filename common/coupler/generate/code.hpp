@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The map in the words of C++: literals, comments, names and values.
+// The map in the words of C++ and Python: literals, comments, names and values.
 #pragma once
 
 #include <chrono>
@@ -22,6 +22,9 @@ std::string literal(std::string_view text);
 /// The same as adjacent literals, one per line of the text, each on its own line after `indent`; no newline
 /// at the end.
 std::string literal_lines(std::string_view text, std::string_view indent);
+
+/// A str of Python, in one line of printable characters.
+std::string python_literal(std::string_view text);
 
 /// One line for a `//` comment: control characters become blanks, characters that turn the writing direction
 /// (the compiler warns of them) go.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <iterator>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -45,23 +46,6 @@ std::vector<std::string_view> taken_by(const Connection& connection) {
     for (const std::string_view name : {"baud", "device", "parity", "rs485", "stop_bits"})
       names.push_back(name);
   return names;
-}
-
-/// A str of Python, in one line of printable characters.
-std::string python_literal(std::string_view text) {
-  std::string out = "\"";
-  for (std::size_t at = 0; at < text.size();) {
-    const Character c = character_at(text, at);
-    const std::string_view bytes = text.substr(at, c.size);
-    at += c.size;
-    if (bytes == "\"" || bytes == "\\")
-      out.append("\\").append(bytes);
-    else if (!c.valid || is_control(c.code) || turns_direction(c.code))
-      out += fmt::format("\\U{:08x}", static_cast<std::uint32_t>(c.code));
-    else
-      out += bytes;
-  }
-  return out + '"';
 }
 
 /// `member`: the name of the point in Python. A device may have values that the map gives no name.
@@ -204,8 +188,8 @@ class {class_name}({base}):
     _connect_delay = {connect_delay}
 
     def __init__(self, {place}, unit: int = {unit}, timeout: float = {timeout},
-                 verify: Verify | str = Verify.{verify}) -> None:
-        super().__init__({place_names}, unit, timeout, verify)
+                 verify: Verify | str = Verify.{verify}{tls}) -> None:
+        super().__init__({place_names}, unit, timeout, verify{tls_name})
 {points})";
 
 /// The parameters of the constructor that say where the coupler is.
@@ -218,6 +202,18 @@ std::string place_arguments(const Connection& connection) {
     return fmt::format("address: str{}, port: int = {}, *", given(connection.address), connection.port);
   return fmt::format("device: str{}, *, baud: int = {}, parity: str = \"{}\", stop_bits: int = {}",
                      given(line.device), line.baud, to_string(line.parity), line.stop_bits);
+}
+
+/// The parameter of the constructor for TLS, with what the map says of it.
+std::string tls_parameter(const Tls& tls) {
+  if (!tls.present()) return ", tls: Tls | ssl.SSLContext | None = None";
+  std::string out = fmt::format(",\n                 tls: Tls | ssl.SSLContext | None = Tls({}, {}",
+                                python_literal(tls.certificate), python_literal(tls.key));
+  const std::pair<std::string_view, std::string_view> others[] = {
+      {"ca", tls.ca}, {"name", tls.name}, {"pin", tls.pin}};
+  for (const auto& [key, value] : others)
+    if (!value.empty()) out += fmt::format(", {}={}", key, python_literal(value));
+  return out + ")";
 }
 
 std::string_view base_class(const Connection& connection) {
@@ -263,6 +259,7 @@ std::string python_client(const Map& map, const Provenance& provenance) {
                           spec(map, point, names[i]));
   }
   const Connection& connection = map.connection;
+  const bool may_use_tls = !connection.is_rtu();
   return fmt::format(
              // In the first two lines, Python takes "coding=…" of a comment for the encoding: the first one
              // that it finds. With some encodings a description would be code.
@@ -283,6 +280,8 @@ std::string python_client(const Map& map, const Provenance& provenance) {
           fmt::arg("place", place_arguments(connection)),
           fmt::arg("place_names",
                    connection.serial.present() ? "device, baud, parity, stop_bits" : "address, port"),
+          fmt::arg("tls", may_use_tls ? tls_parameter(connection.tls) : std::string()),
+          fmt::arg("tls_name", may_use_tls ? ", tls" : ""),
           fmt::arg("verify", capitals(to_string(map.verify))), fmt::arg("unit", connection.unit),
           fmt::arg("timeout", seconds(connection.timeout)), fmt::arg("points", points)));
 }

@@ -113,9 +113,6 @@ Exit write_python(const Arguments& arguments, const generate::Provenance& proven
     return complain("generate", bad_input,
                     "the client in Python waits for answers, and unit 0 is a broadcast",
                     "write from C++, or give the map the unit of one coupler");
-  if (map.connection.tls.present())
-    return complain("generate", bad_input, "the client in Python has no TLS, and the map has",
-                    "write from C++, or give it a map of the port without TLS");
   return write(arguments, {{provenance.name + "_client.py", generate::python_client(map, provenance)}});
 }
 

@@ -14,15 +14,19 @@ again. Nothing is read or written by itself. All may be called from any thread. 
 from __future__ import annotations
 
 import copy
+import dataclasses
 import enum
 import errno
 import functools
+import hashlib
 import importlib
 import inspect
 import logging
 import math
 import operator
+import re
 import socket
+import ssl
 import struct
 import threading
 import time

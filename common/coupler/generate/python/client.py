@@ -39,8 +39,9 @@ class Client(_Link):
     # Requests that read every point: table, address, count, names.
     _plan: tuple[tuple[str, int, int, tuple[str, ...]], ...] = ()
 
-    def __init__(self, address: str, port: int, unit: int, timeout: float, verify: Verify | str) -> None:
-        super().__init__(address, port, unit, timeout)
+    def __init__(self, address: str, port: int, unit: int, timeout: float, verify: Verify | str,
+                 tls: Tls | ssl.SSLContext | None = None) -> None:
+        super().__init__(address, port, unit, timeout, tls)
         self.verify = Verify(verify)
         self._points: dict[str, Any] = {}
         self._lock = threading.RLock()
@@ -191,7 +192,11 @@ class Client(_Link):
 
     def _node_address(self) -> str:
         host = f"[{self.address}]" if ":" in self.address else self.address
-        return f"tcp://{host}:{self.port}/{self.unit}"
+        address = f"{'tcp' if self._tls is None else 'tls'}://{host}:{self.port}/{self.unit}"
+        if not isinstance(self._tls, Tls):
+            return address
+        options = dataclasses.asdict(self._tls).items()
+        return address + "".join(f" --{'tls-name' if key == 'name' else key} {value}" for key, value in options if value)
 
     def _compare_maps(self) -> None:
         if self.verify is Verify.OFF:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Behind spec.py in a generated file: how requests are made.
+# Behind tls.py in a generated file: how requests are made.
 
 
 @functools.lru_cache(maxsize=None)
@@ -16,8 +16,9 @@ class _Link:
     _request_gap = 0.0    # seconds between a reply and the next request
     _connect_delay = 0.0  # seconds between connecting and the first request
 
-    def __init__(self, address: str, port: int, unit: int, timeout: float) -> None:
+    def __init__(self, address: str, port: int, unit: int, timeout: float, tls: Tls | ssl.SSLContext | None) -> None:
         self.address, self.port, self.unit, self.timeout = address, port, unit, timeout
+        self._tls = tls
         self._modbus: Any = None
         self._next_request = 0.0
 
@@ -38,13 +39,9 @@ class _Link:
         self._next_request = max(self._next_request, time.monotonic() + self._connect_delay)
 
     def _not_connected(self, error: Exception) -> NotConnected:
-        number = None
-        if isinstance(error, TimeoutError):
-            number = errno.ETIMEDOUT
-        elif isinstance(error, OSError):
-            number = error.errno
         why = getattr(error, "strerror", None) or error
-        return NotConnected(f"cannot connect to {self._place()}: {why}; check {self._advice()}", number)
+        return NotConnected(f"cannot connect to {self._place()}: {why}; check {self._advice()}",
+                            _number_of(error))
 
     def _new_modbus(self) -> Any:
         """Returns a client of pymodbus that is connected."""
@@ -56,14 +53,32 @@ class _Link:
         modbus = _ModbusTcpClient(self.address, port=self.port, timeout=self.timeout, retries=0, **options)
         if hasattr(modbus, "params"):
             modbus.params.timeout = self.timeout  # 3.0 cuts it to whole seconds
+        context = self._tls.context() if isinstance(self._tls, Tls) else self._tls
         modbus.socket = socket.create_connection((self.address, self.port), timeout=self.timeout)
+        if context is not None:
+            self._shake_hands(modbus, context)
         return modbus
+
+    def _shake_hands(self, modbus: Any, context: ssl.SSLContext) -> None:
+        tls = self._tls if isinstance(self._tls, Tls) else None
+        plain = modbus.socket
+        try:
+            modbus.socket = context.wrap_socket(plain, server_hostname=tls.name if tls and tls.name else self.address)
+            if tls:
+                tls.check_pin(modbus.socket.getpeercert(binary_form=True))
+        except BaseException:
+            plain.close()
+            modbus.close()
+            raise
+        modbus.recv = functools.partial(_receive, modbus, self.timeout)
 
     def _place(self) -> str:
         return f"{self.address} port {self.port}"
 
     def _advice(self) -> str:
-        return "that the device runs, and its address and port"
+        if self._tls is None:
+            return "that the device runs, and its address and port"
+        return "that the device runs, its address and its port for TLS, and that both certificates are of the right authority"
 
     def _ask(self, method: str, function: int, **request: Any) -> Any:
         """Makes a request of pymodbus and waits for the answer, for the timeout at most."""
