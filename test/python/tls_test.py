@@ -79,6 +79,14 @@ class OverTls(made.Made):
     def test_a_role_carries_its_values(self):
         self.carries_values(self.tls())
 
+    def test_changes_are_told(self):
+        with self.cell(self.tls()) as cell:
+            changes = cell.changes(cell.lamp, period=3600)
+            self.assertIs(next(changes).value, False)
+            cell.lamp.write(True)
+            self.assertIs(next(changes).value, True)
+            changes.close()
+
     def test_a_context_of_the_users_own_does_as_well(self):
         context = ssl.create_default_context(cafile=self.folder / "plant/cell1/authority.pem")
         context.load_cert_chain(self.folder / "plant/cell1/cell1.pem", self.folder / "plant/cell1/cell1.key")

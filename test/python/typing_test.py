@@ -35,6 +35,8 @@ def main() -> None:
             reveal_type(mode)
             if isinstance(mode, values.mode):
                 reveal_type(mode.name)
+            for change in cell.changes(cell.valve, cell.flow, period=0.5):
+                reveal_type(change.time)
             cell.mode.write(values.mode.idle)
             cell.speed.write(80)
             cell.lamps.write([True, False, True])
@@ -49,7 +51,7 @@ def main() -> None:
 
 main()
 """
-TYPES = ["cell_client.CellClient", "bool", "list[bool]", "float", "float", "int", "str", "int", "str", "int"]
+TYPES = ["cell_client.CellClient", "bool", "list[bool]", "float", "float", "int", "str", "int", "str", "float", "int"]
 WRONG = """\
 from cell_client import CellClient
 

@@ -23,12 +23,12 @@ using codec::Type;
 
 // Words of Python; and what a client has, or a member of an IntEnum, which is an int.
 constexpr std::string_view taken_by_client[] = {
-    "False", "None",   "True",   "address", "and",         "as",       "assert", "async",
-    "await", "break",  "class",  "connect", "continue",    "def",      "del",    "disconnect",
-    "elif",  "else",   "except", "finally", "fingerprint", "for",      "from",   "global",
-    "if",    "import", "in",     "is",      "lambda",      "nonlocal", "not",    "online",
-    "or",    "pass",   "points", "port",    "raise",       "read_all", "return", "timeout",
-    "try",   "unit",   "verify", "while",   "with",        "yield"};
+    "changes",    "False", "None",   "True",   "address", "and",         "as",       "assert",
+    "async",      "await", "break",  "class",  "connect", "continue",    "def",      "del",
+    "disconnect", "elif",  "else",   "except", "finally", "fingerprint", "for",      "from",
+    "global",     "if",    "import", "in",     "is",      "lambda",      "nonlocal", "not",
+    "online",     "or",    "pass",   "points", "port",    "raise",       "read_all", "return",
+    "timeout",    "try",   "unit",   "verify", "while",   "with",        "yield"};
 constexpr std::string_view taken_by_int[] = {
     "False",      "None",       "True",     "and",       "as",         "as_integer_ratio",
     "assert",     "async",      "await",    "bit_count", "bit_length", "break",
@@ -176,12 +176,20 @@ std::string keys_left_out(const Map& map) {
   return "    # The map has keys that this client does not carry out: " + out + ".\n";
 }
 
+/// Members of the class that differ from those of its base.
+std::string flags(const Map& map) {
+  std::string out;
+  if (map.connection.serial.rs485) out += "    rs485 = True\n";
+  if (!map.changes) out += "    _may_tell_changes = False\n";
+  return out;
+}
+
 constexpr auto class_form = R"(
 
 class {class_name}({base}):
     """The coupler of the map {map}."""
 
-{left_out}{rs485}    fingerprint = 0x{fingerprint:016x}
+{left_out}{flags}    fingerprint = 0x{fingerprint:016x}
     _plan = (
 {requests}    )
     _request_gap = {request_gap}
@@ -274,8 +282,7 @@ std::string python_client(const Map& map, const Provenance& provenance) {
           class_form, fmt::arg("class_name", python_class(provenance.name)), fmt::arg("map", map.name),
           fmt::arg("left_out", keys_left_out(map)), fmt::arg("fingerprint", map.fingerprint),
           fmt::arg("requests", requests(map)), fmt::arg("base", base_class(connection)),
-          fmt::arg("rs485", connection.serial.rs485 ? "    rs485 = True\n" : ""),
-          fmt::arg("request_gap", seconds(pause_after_reply(map))),
+          fmt::arg("flags", flags(map)), fmt::arg("request_gap", seconds(pause_after_reply(map))),
           fmt::arg("connect_delay", seconds(map.limits.connect_delay)),
           fmt::arg("place", place_arguments(connection)),
           fmt::arg("place_names",

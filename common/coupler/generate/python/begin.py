@@ -7,12 +7,16 @@ The last class of this file has an attribute for each point of the map. Here it 
         press.speed.write(80)                    # returns when the device has taken the value
         print(press.pressure.read())             # asks the device
         print(press.read_all())                  # every point, in as few requests as possible
+        for change in press.changes(press.door):  # at first its value, then each new one
+            print(change.value, change.time)
 
 connect() compares the maps. When the connection breaks, the call in progress raises an error, and the next one connects
 again. Nothing is read or written by itself. All may be called from any thread. Every error is a CouplerError.
 """
 from __future__ import annotations
 
+import collections
+import contextlib
 import copy
 import dataclasses
 import enum
@@ -30,8 +34,9 @@ import ssl
 import struct
 import threading
 import time
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
-from typing import Any, Generic, NoReturn, TypeVar
+from typing import Any, Generic, NamedTuple, NoReturn, TypeVar
 
 try:
     # Not by `import`: some releases have types that a type checker reads, and others have none, which it complains of.
@@ -53,6 +58,7 @@ _EXCEPTIONS = {
 _REJECTED = (2, 3)       # of a range that the device does not have, or that is too long for it
 _UNIT_AWAY = (10, 11)
 _IDENTITY = 0xFF00       # input registers of a node of OpenCoupler: docs/identity.md
+_FUNCTIONS = 0xFF52      # which function codes of its own a node answers
 _MAGIC = [0x4F43, 0x504C, 1]
 
 _READS = {  # of a table: the call of pymodbus, its function code, where the answer has the values

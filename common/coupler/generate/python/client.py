@@ -10,6 +10,9 @@ class Point:
         self._client = client
         client._points[spec.name] = self
 
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.spec.name}>"
+
 
 class Input(Point, Generic[T]):
     """A point that can be read."""
@@ -38,6 +41,7 @@ class Client(_Link):
     fingerprint: int
     # Requests that read every point: table, address, count, names.
     _plan: tuple[tuple[str, int, int, tuple[str, ...]], ...] = ()
+    _may_tell_changes = True  # unless the map has `changes: off`, or the device speaks RTU
 
     def __init__(self, address: str, port: int, unit: int, timeout: float, verify: Verify | str,
                  tls: Tls | ssl.SSLContext | None = None) -> None:
@@ -67,13 +71,17 @@ class Client(_Link):
 
     def read_all(self) -> dict[str, Any]:
         """The values of all points that can be read, by their names in the map; None where the device has none."""
-        words: dict[str, list[int]] = {}
-        with self._lock:
-            self._connected()
-            for table, address, count, names in self._plan:
-                words.update(self._read_together(table, address, count, names))
-            specs = [self._points[name].spec for name in words]
-            return {spec.name: spec.decode(words[spec.name], self._power_of(spec, words)) for spec in specs}
+        return self._read_some(self._points)
+
+    def changes(self, *points: Input[Any], period: float = 0.1) -> Changes:
+        """Returns an iterator over the changes of these points, or of all: at first each with the value that it has, then
+        what is new. A node tells each change of its coils and discrete inputs itself, with its time. The registers, and
+        everything of another device, are read each `period`, in seconds."""
+        readable = [name for _, _, _, names in self._plan for name in names]
+        chosen = [point.spec.name for point in points] or readable
+        for name in set(chosen) - set(readable):
+            raise ValueError(f"{name} cannot be read, so it has no changes")
+        return Changes(self, {name: self._points[name] for name in chosen}, period)
 
     def __enter__(self: C) -> C:
         self.connect()
@@ -99,6 +107,27 @@ class Client(_Link):
         if value is None:
             raise NoValue(f"{spec.name} has no value: {spec.why_none(words)}")
         return value
+
+    def _read_some(self, wanted: Collection[str]) -> dict[str, Any]:
+        """The values of these points, and of what comes with them in one request."""
+        words: dict[str, list[int]] = {}
+        with self._lock:
+            self._connected()
+            for table, address, count, names in self._plan:
+                if any(name in wanted for name in names):
+                    words.update(self._read_together(table, address, count, names))
+            specs = [self._points[name].spec for name in words]
+            return {spec.name: spec.decode(words[spec.name], self._power_of(spec, words)) for spec in specs}
+
+    def _tells_changes(self) -> bool:
+        """The device is a node that answers function code 65."""
+        with self._lock:
+            self._connected()
+            try:
+                return (self._may_tell_changes and self._read("input_registers", _IDENTITY, 3) == _MAGIC and
+                        self._read("input_registers", _FUNCTIONS, 1)[0] & 1 != 0)
+            except ExceptionReply:
+                return False
 
     def _with_exponent(self, spec: Spec) -> dict[str, list[int]]:
         """The registers of the point, and if one request has both those of the exponent of its scale."""

@@ -5,6 +5,8 @@
 class RtuClient(Client):
     """The connection to a coupler that speaks RTU, here over TCP."""
 
+    _may_tell_changes = False
+
     def _new_modbus(self) -> Any:
         framer: Any = inspect.signature(_ModbusTcpClient).parameters["framer"].default
         if isinstance(framer, enum.Enum):
