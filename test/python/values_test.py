@@ -100,6 +100,11 @@ class Values(OfADevice):
             self.raises("NoValue", press.power.read)
             self.assertIsNone(press.read_all()["power"])
 
+    def test_an_exponent_may_leave_nothing_of_the_gain(self):
+        self.press()
+        spec = self.module.Spec("a", "holding_registers", 0, "INT", gain=1e-300, exponent_of="b")
+        self.assertEqual(spec.decode([7], -30), 0)
+
     def test_every_error_comes_back_from_pickle(self):
         self.press()
         module = self.module

@@ -138,7 +138,7 @@ class Spec:
         """Returns 72.6 for 72.60000000000001, as `coupler dump` does: the digits behind the fifteenth come from the
         multiplication, unless it takes them to tell the raw number from others."""
         short = float(f"{value:.15g}")
-        same = math.isfinite(short) and self._nearest_raw(short, gain) == raw
+        same = math.isfinite(short) and gain != 0 and self._nearest_raw(short, gain) == raw
         return short if same else value
 
     def _nearest_raw(self, value: float, gain: float) -> int | float | None:
