@@ -26,6 +26,14 @@ mapping:
     row:      {address: 8, type: DINT, count: 3, max: 1000}
     wide:     {address: 14, type: ULINT, min: 1, max: 1e18}
 """
+EXPONENT = """\
+name: exponent
+mapping:
+  holding_registers:
+    power: {address: 0, type: INT, access: read, scale: {gain: 0.1, offset: 0.3, exponent_of: sf}}
+    long:  {address: 1, type: DINT, order: ABCD, access: read, scale: {gain: 3, exponent_of: sf}}
+    sf:    {address: 3, type: INT, access: read}
+"""
 ROUNDS = 14  # as many as a float has cases
 
 
@@ -156,16 +164,29 @@ class Vectors(made.Made):
         self.check_writing(ALLOWED)
 
     @made.LIVE
+    def test_dump_shows_the_same_values_of_scales_with_an_exponent(self):
+        _, kind = self.client(EXPONENT)
+        with Device() as device, kind("127.0.0.1", device.port, timeout=made.PATIENCE) as client:
+            for power in (*range(-32, 33, 4), -1, 1):
+                for raw in (0, 1, 726, 0x7FFF, 0x8001):
+                    device.tables["holding_registers"][0:4] = [raw, raw, 7, power & 0xFFFF]
+                    values = {name: self.as_json(value) for name, value in client.read_all().items()}
+                    self.assertEqual(values, self.dumped(device), (power, raw))
+
+    def dumped(self, device):
+        done = self.coupler("dump", "cell.yaml", "--at", f"127.0.0.1:{device.port}", "--json")
+        return {point["point"]: self.as_json(point["value"]) for point in json.loads(done.stdout)["points"]}
+
+    @made.LIVE
     def test_dump_shows_the_same_values(self):
         for text in (EVERY_TYPE, SHAPES, ALLOWED):
             _, kind, points = self.points_of(text)
             with Device() as device, kind("127.0.0.1", device.port, timeout=made.PATIENCE) as client:
                 for number in range(ROUNDS):
                     self.fill(device, points, number)
-                    done = self.coupler("dump", "cell.yaml", "--at", f"127.0.0.1:{device.port}", "--json")
-                    dumped = {point["point"]: point["value"] for point in json.loads(done.stdout)["points"]}
+                    dumped = self.dumped(device)
                     values = {name: self.as_json(value) for name, value in client.read_all().items()}
-                    self.assertEqual(values, {name: self.as_json(dumped[name]) for name in values})
+                    self.assertEqual(values, {name: dumped[name] for name in values})
 
     def as_json(self, value):
         """A value as `coupler dump --json` has it, and each number with all its bits."""
