@@ -24,6 +24,19 @@ coupler_install(FILES ${PROJECT_BINARY_DIR}/OpenCouplerConfig.cmake ${PROJECT_BI
                       cmake/CouplerMap.cmake
                 DESTINATION ${folder} COMPONENT dev)
 
+# Public is what generated code includes, and the folders of the libraries that are of use without it.
+file(GLOB public_headers RELATIVE ${PROJECT_SOURCE_DIR}/common CONFIGURE_DEPENDS
+     common/coupler/map/*.hpp common/coupler/modbus/*.hpp)
+list(APPEND public_headers coupler/device/core/node_core.hpp coupler/device/node/point_hooks.hpp coupler/device/node/program.hpp)
+if(TARGET OpenCoupler::client)
+  list(APPEND public_headers coupler/host/client/point.hpp)
+endif()
+if(TARGET OpenCoupler::driver)
+  list(APPEND public_headers coupler/host/ros/program.hpp)
+endif()
+configure_file(cmake/InstallDev.cmake.in ${PROJECT_BINARY_DIR}/InstallDev.cmake @ONLY)
+coupler_install(SCRIPT ${PROJECT_BINARY_DIR}/InstallDev.cmake COMPONENT dev)
+
 # find_package(coupler_driver), which catkin and ament make, has the driver's libraries beside the messages:
 # coupler_driver-extras.cmake.in.
 if(COUPLER_WITH_ROS)

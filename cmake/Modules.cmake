@@ -81,8 +81,8 @@ macro(coupler_install)
 endmacro()
 
 add_custom_target(coupler_dev)  # what the package coupler-dev has
-# coupler_export(TARGET NAME [SET]): others link it as OpenCoupler::NAME, from here or from what is installed, with the headers
-# of this folder. SET: of what needs ROS, coupler_driverTargets.
+# coupler_export(TARGET NAME [SET]): others link it as OpenCoupler::NAME, from here or from what is installed (headers: see
+# Export.cmake). SET: of what needs ROS, coupler_driverTargets.
 function(coupler_export target name)
   set(set OpenCouplerTargets)
   if(ARGC EQUAL 3)
@@ -95,9 +95,6 @@ function(coupler_export target name)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
   target_include_directories(${target} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   coupler_install(TARGETS ${target} EXPORT ${set} DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
-  file(RELATIVE_PATH folder ${COUPLER_INCLUDE} ${CMAKE_CURRENT_SOURCE_DIR})
-  file(GLOB headers CONFIGURE_DEPENDS *.hpp)
-  coupler_install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder} COMPONENT dev)
 endfunction()
 
 # coupler_unite(NAME a.cpp …): sets NAME to files that include these, COUPLER_UNITY each. CMake's own UNITY_BUILD writes
