@@ -60,8 +60,21 @@ set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "coupler-tools (= ${PROJECT_VERSION}), pkg-
 foreach(component node tools dev)
   coupler_install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-${component} COMPONENT ${component})
 endforeach()
-coupler_install(DIRECTORY config/examples/tank DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-dev/examples COMPONENT dev)
-coupler_install(FILES docs/node.md docs/identity.md docs/security.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-node COMPONENT node)
-coupler_install(FILES docs/generated.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-dev COMPONENT dev)
-coupler_install(FILES docs/import-export.md docs/map.md docs/panel.md docs/record.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-tools COMPONENT tools)
+
+# coupler_documents(COMPONENT PATH…): what is read without the sources, with its pictures and examples.
+function(coupler_documents component)
+  set(folder ${PROJECT_BINARY_DIR}/documents/${component})
+  list(JOIN ARGN "\" \"" paths)
+  coupler_install(CODE "execute_process(COMMAND \"${PROJECT_SOURCE_DIR}/scripts/package-documents\" \"${folder}\" \"${paths}\"
+    RESULT_VARIABLE failed)
+  if(failed)
+    message(FATAL_ERROR \"The documents cannot be copied: \${failed}\")
+  endif()" COMPONENT ${component})
+  coupler_install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-${component} COMPONENT ${component})
+endfunction()
+coupler_documents(node docs/node.md docs/identity.md docs/map.md docs/map-page.png docs/messages.md docs/security.md
+  docs/symptoms.md docs/time.md docs/time.svg config/example-node.yaml config/systemd/realtime.conf)
+coupler_documents(tools docs/commands.md docs/couplers.md docs/diff.md docs/import-export.md docs/map.md docs/map-page.png
+  docs/panel.md docs/panel.png docs/record.md)
+coupler_documents(dev docs/generated.md config/examples/tank)
 include(CPack)
