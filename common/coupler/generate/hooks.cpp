@@ -34,6 +34,9 @@ static_assert(fingerprint == 0x{fingerprint:016x}, "{name}_hooks and {name}_map 
 /// exception 04, and nothing of its request is done. When a later point of the same request is refused, on_POINT
 /// is called once more with the value before.
 /// set_POINT(value): from any thread; clients read it from then on. The error says what is wrong with the value.
+///
+/// Where a point has a line, set_POINT(level) drives an output before the next request is answered, get_POINT() is the
+/// last known level, and on_POINT(level) of an input is called when its line has changed.
 class NodeHooks : public ::coupler::device::PointHooks {{
  public:
   NodeHooks() : PointHooks(::coupler::maps::{name}::map) {{}}
@@ -88,11 +91,21 @@ constexpr auto dispatch_form = R"(
   }}
 )";
 
+constexpr auto changes_form = R"(
+ private:
+  void line_changed(::std::uint32_t point, bool level) final {{
+    switch (point) {{
+{cases}      default: return;
+    }}
+  }}
+)";
+
 /// The parts in which the members of the two differ.
 struct Style {
   std::string (*type)(const Point&);       ///< of a decoded value
   std::string (*parameter)(const Point&);  ///< of on_POINT and set_POINT
   std::string_view set_form;               ///< with name, parameter, type and place of the point
+  bool has_lines;                          ///< points with a line have members, too
 };
 
 /// By value what is small.
@@ -103,7 +116,8 @@ std::string parameter(const Point& point) {
 }
 
 constexpr Style hooks_style{
-    cpp_type, parameter, "  auto set_{name}({parameter} value) {{ return set<{type}>({index}, value); }}\n"};
+    cpp_type, parameter, "  auto set_{name}({parameter} value) {{ return set<{type}>({index}, value); }}\n",
+    true};
 
 /// A value without heap, as PlainValue takes it.
 std::string plain_type(const Point& point) {
@@ -118,28 +132,45 @@ std::string plain_parameter(const Point& point) {
 }
 
 constexpr Style core_style{plain_type, plain_parameter,
-                           "  bool set_{name}({parameter} value) {{ return set({index}, value); }}\n"};
+                           "  bool set_{name}({parameter} value) {{ return set({index}, value); }}\n", false};
 
-/// on_POINT and set_POINT of the points without hardware, and the switch that calls on_POINT.
+/// The members of a point with a line but for on_POINT of an output.
+std::string line_members(const Point& point, const std::string& name, std::size_t index) {
+  const bool is_input = point.table == Table::discrete_inputs;
+  return fmt::format(
+      "{}  bool get_{}() const {{ return level_of({}); }}\n",
+      is_input ? fmt::format("  virtual void on_{}(bool) {{}}\n", name)
+               : fmt::format("  auto set_{}(bool level) {{ return drive({}, level); }}\n", name, index),
+      name, index);
+}
+
+/// The members of all points, and the switches that call on_POINT.
 std::string hook_members(const Map& map, const Style& style) {
   const std::vector<std::string> names = members(map);
   std::string methods;
   std::string cases;
+  std::string changes;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Point& point = map.points[i];
-    if (has_hardware(point)) continue;
+    const bool has_line = point.line.present() && style.has_lines;
+    if (has_hardware(point) && !has_line) continue;
     const std::string type = style.type(point);
     const std::string parameter = style.parameter(point);
     methods += fmt::format("\n  /// {}\n", documentation(point));
-    if (is_hooked_output(point)) {
+    if (is_hooked_output(point) || (has_line && is_writable(point))) {
       methods += fmt::format("  virtual bool on_{}({}) {{ return true; }}\n", names[i], parameter);
       cases += fmt::format("      case {}: return on_{}(decode<{}>(point, registers));\n", i, names[i], type);
     }
+    if (has_line) methods += line_members(point, names[i], i);
+    if (has_line && point.table == Table::discrete_inputs)
+      changes += fmt::format("      case {}: return on_{}(level);\n", i, names[i]);
     if (is_set_by_firmware(point))
       methods += fmt::format(fmt::runtime(style.set_form), fmt::arg("name", names[i]),
                              fmt::arg("parameter", parameter), fmt::arg("type", type), fmt::arg("index", i));
   }
-  return cases.empty() ? methods : methods + fmt::format(dispatch_form, fmt::arg("cases", cases));
+  if (!cases.empty()) methods += fmt::format(dispatch_form, fmt::arg("cases", cases));
+  if (!changes.empty()) methods += fmt::format(changes_form, fmt::arg("cases", changes));
+  return methods;
 }
 
 }  // namespace

@@ -27,6 +27,7 @@ class Throwing : public PointHooks {
   explicit Throwing(const Map& map) : PointHooks(map) {}
   bool accept(std::uint32_t, const std::uint16_t* registers) override {
     if (registers[0] > 100) throw std::out_of_range("too fast");
+    if (registers[0] == 14) return refuse("14 is taken");
     return registers[0] != 13;
   }
   bool answers() override {
@@ -71,6 +72,13 @@ TEST_F(Guarded, A_hook_that_throws_refuses_and_is_told) {
   EXPECT_FALSE(accept(101));
   EXPECT_THAT(log_.lines,
               ElementsAre("the hook of point 'speed' threw an exception: too fast; the write is refused"));
+}
+
+TEST_F(Guarded, The_reason_of_a_refusal_is_told_once) {
+  EXPECT_FALSE(accept(14));
+  EXPECT_THAT(log_.lines, ElementsAre("a write of point 'speed' is refused: 14 is taken"));
+  EXPECT_FALSE(accept(13));
+  EXPECT_EQ(log_.lines.size(), 1U);
 }
 
 TEST_F(Guarded, What_is_asked_about_reads_is_passed_on_and_a_hook_that_throws_is_a_failed_device) {

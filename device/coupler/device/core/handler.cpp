@@ -47,6 +47,7 @@ Handler::Handler(const Map& map, Hardware hardware, const NodeState& state, cons
       schedule_(state.schedule),
       clock_(clock),
       shows_identity_(hardware.shows_identity()),
+      hears_lines_(hardware.hears_lines()),
       forbids_values_(
           std::any_of(map.points.begin(), map.points.end(),
                       [](const Point& point) { return is_writable(point) && forbids_values(point); })),
@@ -94,6 +95,7 @@ void Handler::tick(TimePoint now) {
 void Handler::drive_due(TimePoint now) {
   if (watchdog_.is_due(now)) expire_watchdog(now);
   drive_scheduled(now);
+  drive_wanted(now);
 }
 
 void Handler::expire_watchdog(TimePoint now) {

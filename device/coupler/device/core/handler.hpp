@@ -118,6 +118,8 @@ class Handler {
   Answer hardware_failed();
   void drive_due(TimePoint now);
   void expire_watchdog(TimePoint now);
+  /// Drives what the firmware wants outputs with a line to have. It neither arms nor feeds the watchdog.
+  void drive_wanted(TimePoint now);
   bool drive_safe(TimePoint now);
   void show_outputs();
   bool read_hardware(Table table, modbus::Range range, Span<std::uint16_t> cells, TimePoint now);
@@ -141,7 +143,8 @@ class Handler {
   tl::expected<void, modbus::Exception> store(Table table, modbus::Range range, Span<std::uint16_t> cells,
                                               TimePoint now);
   tl::expected<void, modbus::Exception> drive_and_store(Table table, modbus::Range range,
-                                                        Span<std::uint16_t> cells, TimePoint now);
+                                                        Span<std::uint16_t> cells, TimePoint now,
+                                                        bool wanted_by_firmware = false);
   /// Pulses of the range that begin with what next_ says, before it is driven: they end all the same if this
   /// process dies meanwhile, and if that fails, for a line may have moved.
   void begin_pulses(modbus::Range coils, TimePoint now);
@@ -183,6 +186,7 @@ class Handler {
   OutputSchedule& schedule_;
   const Clock* clock_;
   bool shows_identity_;
+  bool hears_lines_;                                          ///< a firmware's code does
   bool forbids_values_;                                       ///< the map does, of a point that is written
   bool has_pulses_;                                           ///< the map has
   bool wrote_output_ = false;                                 ///< the request that is being answered has

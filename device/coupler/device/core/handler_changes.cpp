@@ -30,7 +30,7 @@ void Handler::take(TimePoint now) {
 /// A client that has asked for changes not long ago will again: none waits for longer than half of that.
 bool Handler::wants_news(TimePoint now) const {
   if (listened_ && now - *listened_ < 2 * std::chrono::milliseconds(modbus::longest_wait)) return true;
-  return hardware_.has_to_look();
+  return hears_lines_ || hardware_.has_to_look();
 }
 
 /// Brings the cells up to date. An input that has changed since news were taken is told of as well: no reply

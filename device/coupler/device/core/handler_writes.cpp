@@ -24,7 +24,8 @@ tl::expected<void, Exception> Handler::store(Table table, modbus::Range range, S
 }
 
 tl::expected<void, Exception> Handler::drive_and_store(Table table, modbus::Range range,
-                                                       Span<std::uint16_t> cells, TimePoint now) {
+                                                       Span<std::uint16_t> cells, TimePoint now,
+                                                       bool wanted_by_firmware) {
   if (is_forbidden(table, range)) return tl::unexpected(Exception::illegal_data_value);
   const auto next = Span<std::uint16_t>(next_).first(cells.size());
   edge_points_.keep_latches(table, range, cells, next);
@@ -32,7 +33,7 @@ tl::expected<void, Exception> Handler::drive_and_store(Table table, modbus::Rang
     return tl::unexpected(Exception::server_device_failure);
   const bool pulses = has_pulses_ && table == Table::coils;
   if (pulses) begin_pulses(range, now);
-  if (const auto driven = hardware_.drive(table, range, next); !driven) {
+  if (const auto driven = hardware_.drive(table, range, next, wanted_by_firmware); !driven) {
     if (driven.error().hardware_failed) ++statistics_.hardware_errors;
     return tl::unexpected(driven.error().exception);
   }
@@ -44,6 +45,22 @@ tl::expected<void, Exception> Handler::drive_and_store(Table table, modbus::Rang
   changes_.set_time(done);
   changes_.compare(table, range);
   return {};
+}
+
+/// While the watchdog keeps outputs safe, a firmware that repeats what it wants does not undo that.
+void Handler::drive_wanted(TimePoint now) {
+  for (const WantedOutput& wanted : hardware_.take_wanted_outputs()) {
+    const Point& point = map_.points[wanted.point];
+    const int level = wanted.level ? 1 : 0;
+    const bool is_kept_safe = watchdog_.state() == OutputWatchdog::State::expired &&
+                              (watchdog_.is_locked() || safe_level(point.safe, level) != level);
+    const modbus::Range coil = range(point);
+    next_[0] = static_cast<std::uint16_t>(level);
+    if (is_kept_safe || !drive_and_store(point.table, coil, image_.find(point.table, coil), now, true))
+      hardware_.not_driven(wanted, is_kept_safe);
+    else
+      schedule_.cancel_overlapping(point.table, coil, now);
+  }
 }
 
 void Handler::begin_pulses(modbus::Range coils, TimePoint now) {

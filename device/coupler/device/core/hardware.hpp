@@ -53,6 +53,13 @@ class Hardware {
     return hooked_ == nullptr ? std::nullopt : hooked_->refuse_read(table, range);
   }
 
+  /// See Hooks.
+  [[nodiscard]] Span<const WantedOutput> take_wanted_outputs() {
+    return hooked_ == nullptr ? Span<const WantedOutput>() : hooked_->take_wanted_outputs();
+  }
+  void not_driven(const WantedOutput& wanted, bool watchdog) { hooked_->not_driven(wanted, watchdog); }
+  [[nodiscard]] bool hears_lines() const noexcept { return hooked_ != nullptr && hooked_->hears_lines(); }
+
   /// Lines::is_simulated(), Lines::pull().
   bool is_simulated() const { return lines_->is_simulated(); }
   [[nodiscard]] bool pull(modbus::Range inputs, Span<const std::uint16_t> levels) {
@@ -82,10 +89,11 @@ class Hardware {
   }
 
   /// Drives the outputs of the range, all of them or none. Exceptions: AnaloguePoints::drive() 's; 04 if the
-  /// firmware refuses, which is asked first.
+  /// firmware refuses, which is asked first, unless it wants this itself.
   [[nodiscard]] tl::expected<void, DriveError> drive(Table table, modbus::Range range,
-                                                     Span<const std::uint16_t> next) {
-    if (hooked_ == nullptr) return drive_outputs(table, range, next);
+                                                     Span<const std::uint16_t> next,
+                                                     bool wanted_by_firmware = false) {
+    if (hooked_ == nullptr || wanted_by_firmware) return drive_outputs(table, range, next);
     if (!hooked_->write(table, range, next))
       return tl::unexpected(DriveError{modbus::Exception::server_device_failure, false});
     const auto driven = drive_outputs(table, range, next);

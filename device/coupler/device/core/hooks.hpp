@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "coupler/device/core/change_ring.hpp"
 #include "coupler/device/core/changes.hpp"
 #include "coupler/device/core/image.hpp"
 #include "coupler/modbus/limits.hpp"
@@ -23,8 +24,15 @@ class Waker {
   ~Waker() = default;
 };
 
-/// A firmware's own code behind the points that nothing else is behind (has_hardware() is false). Points are
-/// indices into Map::points. All of it is called in the thread that answers clients, but for make_safe().
+/// The level that a firmware wants an output with a line to have. The point is an index into Map::points.
+struct WantedOutput {
+  std::uint32_t point;
+  bool level;
+};
+
+/// A firmware's own code behind the points that nothing else is behind (has_hardware() is false), and beside
+/// those that have a line. Points are indices into Map::points. All of it is called in the thread that
+/// answers clients, but for make_safe().
 class Hooks {
  public:
   virtual ~Hooks() = default;
@@ -43,6 +51,27 @@ class Hooks {
   /// another point of the same request is refused, those already accepted are called again with the values
   /// they had.
   [[nodiscard]] virtual bool accept(std::uint32_t point, const std::uint16_t* registers) = 0;
+
+  /// Why accept(), which has just been called, refuses, if the firmware says so; otherwise empty. It is told
+  /// once, for the log.
+  [[nodiscard]] virtual std::string_view take_reason() { return {}; }
+
+  /// What the firmware wants outputs with a line to have, which is driven in this order. It is valid until
+  /// the next call, and is handed out once.
+  [[nodiscard]] virtual Span<const WantedOutput> take_wanted_outputs() { return {}; }
+
+  /// This output was not driven, because the watchdog keeps it in its safe state, or else because its line
+  /// fails.
+  virtual void not_driven(const WantedOutput& /*wanted*/, bool /*watchdog*/) {}
+
+  /// Returns whether take_level() is to be called as soon as an input's line changes. It is asked once.
+  [[nodiscard]] virtual bool hears_lines() const noexcept { return false; }
+
+  /// The line of the point has this level; `is_news`: from now on. False: the firmware's code has failed at
+  /// it, so the outputs are to go to their safe state.
+  [[nodiscard]] virtual bool take_level(std::uint32_t /*point*/, bool /*level*/, bool /*is_news*/) {
+    return true;
+  }
 
   /// Returns whether the node shows that it is one, by its identity area and by FC 20, 43, 65 and 66. It is
   /// asked once.
@@ -67,8 +96,8 @@ class Hooks {
   virtual void make_safe() {}
 };
 
-/// Writes to points that a firmware's code is behind, and what that code sets. The image holds what it
-/// accepted.
+/// Writes to points that a firmware's code is behind or is asked about, what that code sets, and what it
+/// hears of lines. The image holds what it accepted.
 class HookedPoints {
  public:
   /// All of them outlive it.
@@ -82,8 +111,9 @@ class HookedPoints {
   /// again.
   [[nodiscard]] bool write(Table table, modbus::Range range, Span<const std::uint16_t> next);
 
-  /// Checks each value by itself, as write() does, but only values that are not in force. Overwrites in
-  /// `next` those that are refused with the values in force. Returns false if there is one.
+  /// Checks each value by itself, as write() does, but only values that are not in force, and none of a line:
+  /// its duration ends whatever the firmware says. Overwrites in `next` those that are refused with the
+  /// values in force. Returns false if there is one.
   [[nodiscard]] bool write_each(Table table, modbus::Range range, Span<std::uint16_t> next);
 
   /// Gives the points that write() has just accepted their values again.
@@ -98,6 +128,17 @@ class HookedPoints {
     return hooks_.refuse_read(table, range);
   }
 
+  /// See Hooks.
+  [[nodiscard]] Span<const WantedOutput> take_wanted_outputs() { return hooks_.take_wanted_outputs(); }
+  void not_driven(const WantedOutput& wanted, bool watchdog) { hooks_.not_driven(wanted, watchdog); }
+  [[nodiscard]] bool hears_lines() const noexcept { return hooks_.hears_lines(); }
+
+  /// The firmware gets the levels of all lines, as the image has them now.
+  void begin_levels(const ChangeRing& ring);
+  /// It hears of the changes of lines since the last call, one by one, and where some were lost, of the
+  /// levels in the image. False: its code has failed.
+  [[nodiscard]] bool tell_levels(const ChangeRing& ring);
+
   void make_safe() { hooks_.make_safe(); }
 
  private:
@@ -109,11 +150,14 @@ class HookedPoints {
   bool is_asked(std::uint32_t point, modbus::Range range, Span<const std::uint16_t> next);
   Span<const std::uint16_t> before(std::uint32_t point) const;
   void take_back(Indices points, modbus::Range range, Span<const std::uint16_t> next);
+  bool tell(const modbus::Change& change);
+  bool show_levels(bool are_news);
 
   const Map& map_;
   Image& image_;
   Hooks& hooks_;
   std::array<std::uint16_t, modbus::max_read_bits> value_{};  ///< of the point that is asked about
+  std::uint64_t heard_ = 0;                                   ///< number of the last change that was told
 };
 
 }  // namespace coupler::device

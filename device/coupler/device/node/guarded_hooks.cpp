@@ -70,7 +70,30 @@ bool GuardedHooks::accept(std::uint32_t point, const std::uint16_t* registers) {
     log_limited(fmt::format("the hook of point '{}'", map_.points[point].name),
                 fmt::format("{}; the write is refused", what));
   };
-  return guard([&] { accepted = hooks_.accept(point, registers); }, thrown) && accepted;
+  if (!guard([&] { accepted = hooks_.accept(point, registers); }, thrown)) return false;
+  const std::string_view why = hooks_.take_reason();
+  if (!accepted && !why.empty())
+    log_.warn_limited("refusal",
+                      fmt::format("a write of point '{}' is refused: {}", map_.points[point].name, why));
+  return accepted;
+}
+
+/// Who cannot react to an input leaves outputs as they should not be.
+bool GuardedHooks::take_level(std::uint32_t point, bool level, bool is_news) {
+  return guard([&] { (void)hooks_.take_level(point, level, is_news); },
+               [&](const char* what) {
+                 log_limited(fmt::format("the hook of point '{}'", map_.points[point].name),
+                             fmt::format("{}; outputs go to their safe state", what));
+               });
+}
+
+void GuardedHooks::not_driven(const WantedOutput& wanted, bool watchdog) {
+  log_.warn_limited(
+      "not driven",
+      fmt::format("the program could not switch point '{}' {}: {}", map_.points[wanted.point].name,
+                  wanted.level ? "on" : "off",
+                  watchdog ? "the watchdog has expired, and no client has written an output since"
+                           : "its line cannot be driven"));
 }
 
 }  // namespace coupler::device

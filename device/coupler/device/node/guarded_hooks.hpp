@@ -25,6 +25,12 @@ class GuardedHooks final : public Hooks {
   void put_new_values(Image& image, Changes& changes) override { hooks_.put_new_values(image, changes); }
   [[nodiscard]] bool accept(std::uint32_t point, const std::uint16_t* registers) override;
   [[nodiscard]] bool shows_identity() const noexcept override { return hooks_.shows_identity(); }
+  [[nodiscard]] Span<const WantedOutput> take_wanted_outputs() override {
+    return hooks_.take_wanted_outputs();
+  }
+  void not_driven(const WantedOutput& wanted, bool watchdog) override;
+  [[nodiscard]] bool hears_lines() const noexcept override { return hooks_.hears_lines(); }
+  [[nodiscard]] bool take_level(std::uint32_t point, bool level, bool is_news) override;
   [[nodiscard]] bool answers() override;
   [[nodiscard]] std::optional<modbus::Exception> refuse_read(Table table, modbus::Range range) override;
   [[nodiscard]] std::string_view why_it_ends() const noexcept override { return hooks_.why_it_ends(); }

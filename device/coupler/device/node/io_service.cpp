@@ -122,6 +122,7 @@ IoService::IoService(const ServingContext& context, Loop& loop, Log& log, int cl
     : loop_(loop),
       log_(log),
       statistics_(context.state->statistics()),
+      hooked_(context.hooked.get()),
       ring_(kept_changes),
       told_(context.state->image().bits().size()),
       changes_(context.state->image(), ring_, told_),
@@ -137,6 +138,7 @@ IoService::IoService(const ServingContext& context, Loop& loop, Log& log, int cl
       trips_(statistics_.watchdog_trips) {
   handler_.set_machine(context.state->machine());
   handler_.tell_changes(random_epoch(), now_);
+  if (hooked_ != nullptr) hooked_->begin_levels(changes_.ring());
   if (clients >= 0) intake_ = std::make_unique<Intake>(loop, clients, tcp_);
   for (InputGroup* group : context.wiring->event_sources())
     edge_handlers_.emplace_back(loop, *group, handler_, log);
@@ -176,8 +178,16 @@ void IoService::turn() {
   timer_.set(handler_.next_scheduled());
   now_ = loop_.run_once(shorter(heartbeat_period, shorter(work, log_.tick(now_))));
   handler_.tick(now_);
+  if (hooked_ != nullptr) tell_firmware();
   tcp_.tick(now_);
   log_trips();
+}
+
+/// What the firmware wanted before its code failed does not bring outputs back.
+void IoService::tell_firmware() {
+  if (hooked_->tell_levels(changes_.ring())) return;
+  (void)hooked_->take_wanted_outputs();
+  (void)make_safe(modbus::Reason::safe_state);
 }
 
 void IoService::log_trips() {

@@ -45,12 +45,14 @@ class IoService {
   class Intake;
 
   void turn();
+  void tell_firmware();
   void log_trips();
 
   Loop& loop_;
   Log& log_;
   std::list<EdgeHandler> edge_handlers_;
   const Statistics& statistics_;
+  HookedPoints* hooked_;  ///< null: no firmware's code is behind points
   std::vector<ChangeRing::Entry> ring_;
   std::vector<std::uint16_t> told_;
   Changes changes_;

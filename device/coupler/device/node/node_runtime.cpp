@@ -89,11 +89,11 @@ int NodeRuntime::serve(SupervisorLink& supervisor, std::vector<OpenConnection> c
   const Signals signals(loop);
   supervisor.watch(loop);
   if (hooks_) waker_ = std::make_unique<LoopWaker>(loop);
-  if (hooks_ && !hooks_->begin(waker_.get())) return ServeError::device_failed;
   if (context_->channels)
     sampler_ =
         std::make_unique<Sampler>(*context_->channels, Sampler::period_for(context_->map->polling.rate));
   IoService service(*context_, loop, log_, tls_ ? tls_->clients() : -1);
+  if (hooks_ && !hooks_->begin(waker_.get())) return ServeError::device_failed;  // it may ask for levels
   service.take_over(std::move(clients));
   service.run(
       [&](TimePoint now) {

@@ -25,6 +25,19 @@ std::uint32_t changes_lost(const std::vector<std::uint16_t>& values, const std::
 
 }  // namespace
 
+PointHooks::PointHooks(const Map& map)
+    : map_(map),
+      set_(map.points.size()),
+      levels_(map.points.size()),
+      has_input_lines_(std::any_of(map.points.begin(), map.points.end(), [](const Point& point) {
+        return point.line.present() && point.table == Table::discrete_inputs;
+      })) {
+  const auto lines = static_cast<std::size_t>(std::count_if(
+      map.points.begin(), map.points.end(), [](const Point& point) { return point.line.present(); }));
+  wanted_.reserve(lines);
+  taken_.reserve(lines);
+}
+
 void PointHooks::allow_setting(Waker* waker) {
   process_ = ::getpid();
   waker_ = waker;
@@ -34,6 +47,34 @@ std::string PointHooks::wrong_process() const {
   if (process_ == ::getpid()) return {};
   return "this process does not answer clients; values are set in serving_began(), in threads that it "
          "starts, or later";
+}
+
+tl::expected<void, std::string> PointHooks::drive(std::uint32_t point, bool level) {
+  if (std::string wrong = wrong_process(); !wrong.empty()) return tl::unexpected(std::move(wrong));
+  const std::lock_guard lock(mutex_);
+  wanted_.erase(std::remove_if(wanted_.begin(), wanted_.end(),
+                               [&](const WantedOutput& other) { return other.point == point; }),
+                wanted_.end());
+  wanted_.push_back({point, level});
+  is_any_wanted_ = true;
+  if (waker_ != nullptr) waker_->wake();
+  return {};
+}
+
+Span<const WantedOutput> PointHooks::take_wanted_outputs() {
+  if (!is_any_wanted_) return {};
+  const std::lock_guard lock(mutex_);
+  taken_.clear();
+  std::swap(taken_, wanted_);
+  is_any_wanted_ = false;
+  return taken_;
+}
+
+bool PointHooks::take_level(std::uint32_t point, bool level, bool is_news) {
+  const bool before = levels_[point].exchange(level, std::memory_order_relaxed);
+  if (is_news && before != level && map_.points[point].table == Table::discrete_inputs)
+    line_changed(point, level);
+  return true;
 }
 
 void PointHooks::keep(std::uint32_t point, const std::uint16_t* registers) {

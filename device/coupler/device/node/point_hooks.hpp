@@ -5,8 +5,11 @@
 #include <sys/types.h>
 
 #include <array>
+#include <atomic>
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
+#include <utility>
 #include <vector>
 
 #include "coupler/device/core/hooks.hpp"
@@ -54,10 +57,33 @@ class PointHooks : public Hooks {
   void put_new_values(Image& image, Changes& changes) override;
   void allow_setting(Waker* waker) final;
   [[nodiscard]] bool accept(std::uint32_t, const std::uint16_t*) override { return true; }
+  [[nodiscard]] std::string_view take_reason() final {
+    return std::exchange(has_reason_, false) ? std::string_view(reason_) : std::string_view();
+  }
+  [[nodiscard]] Span<const WantedOutput> take_wanted_outputs() final;
+  [[nodiscard]] bool hears_lines() const noexcept final { return has_input_lines_; }
+  [[nodiscard]] bool take_level(std::uint32_t point, bool level, bool is_news) final;
 
  protected:
   /// The map outlives it.
-  explicit PointHooks(const Map& map) : map_(map), set_(map.points.size()) {}
+  explicit PointHooks(const Map& map);
+
+  /// For on_POINT: returns false, and the log says why the write was refused. Only in the thread that answers
+  /// clients.
+  bool refuse(std::string_view why) {
+    reason_ = why;
+    has_reason_ = true;
+    return false;
+  }
+
+  /// From any thread of the process that serves: an output's line is driven to this level before the next
+  /// request is answered, as a client's write would. What was wanted of it before and is not driven yet does
+  /// not count. The error says that this is another process.
+  tl::expected<void, std::string> drive(std::uint32_t point, bool level);
+  /// From any thread: the last known level of a line.
+  bool level_of(std::uint32_t point) const { return levels_[point].load(std::memory_order_relaxed); }
+  /// An input's line has this level from now on.
+  virtual void line_changed(std::uint32_t /*point*/, bool /*level*/) {}
 
   template <class T>
   T decode(std::uint32_t point, const std::uint16_t* registers) const {
@@ -95,6 +121,13 @@ class PointHooks : public Hooks {
   UrgentMutex mutex_;
   std::vector<NewValues> set_;         ///< by point
   std::vector<std::uint32_t> points_;  ///< those that are not empty
+  std::vector<WantedOutput> wanted_;   ///< outputs to be driven, each once; guarded by mutex_
+  std::vector<WantedOutput> taken_;    ///< those that are being driven
+  std::atomic<bool> is_any_wanted_{false};
+  std::vector<std::atomic<bool>> levels_;  ///< of lines, by point
+  bool has_input_lines_;
+  std::string reason_;
+  bool has_reason_ = false;  ///< that was not taken yet
 };
 
 }  // namespace coupler::device
