@@ -36,6 +36,11 @@ class Gate : public coupler::maps::gate::NodeHooks {
     return true;
   }
 
+  void on_button(bool pressed) override {
+    tell("button", pressed ? 1 : 0);
+    if (!pressed) set_brake(false);
+  }
+
   void make_safe() override { tell("safe", 0); }
 
   void serving_began() override {

@@ -18,6 +18,7 @@ check "it begins in the process that serves" says gate "^began 0 in $(worker gat
 check "what its thread sets is read" wait_until input_is 0 1
 sim_pull plant 2 up
 check "a line is read beside it" wait_until input_is 1 1
+check "and its hook is called, though no client waits for it" wait_until says gate "^button 1 in $(worker gate)$"
 
 echo "# one request, a hook and a line"
 sim_pull plant 0 down
@@ -28,6 +29,13 @@ check "the firmware is told a speed" answered client -t 4 -r 0 127.0.0.1 -- 5
 check "then the hook accepts" set_coils 1 1
 expect "the line is driven, against its pull" 1 "$(sim_value plant 0)"
 expect "the hooks were called in that order" "motor 1 speed 5 motor 1" "$(hooks_called)"
+
+echo "# a line drives another one"
+sim_pull plant 2 down
+check "the hook of the button is called" wait_until says gate "^button 0 in $(worker gate)$"
+check "and has driven the brake" wait_until level_is 0 0
+expect "clients read that" 0 "$(coil 1)"
+check "the brake is put on again" set_coils 1 1
 
 echo "# the process that serves dies"
 check "the brake is released" set_coils 1 0
