@@ -72,8 +72,8 @@ function(coupler_documents component)
   endif()" COMPONENT ${component})
   coupler_install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coupler-${component} COMPONENT ${component})
 endfunction()
-coupler_documents(node docs/node.md docs/identity.md docs/map.md docs/map-page.png docs/messages.md docs/security.md
-  docs/symptoms.md docs/time.md docs/time.svg config/example-node.yaml config/systemd/realtime.conf)
+coupler_documents(node docs/node.md docs/node-lines.md docs/node-safety.md docs/identity.md docs/map.md docs/map-page.png
+  docs/messages.md docs/security.md docs/symptoms.md docs/time.md docs/time.svg config/example-node.yaml config/systemd/realtime.conf)
 coupler_documents(tools docs/commands.md docs/couplers.md docs/diff.md docs/import-export.md docs/map.md docs/map-page.png
   docs/panel.md docs/panel.png docs/record.md)
 coupler_documents(dev docs/generated.md config/examples/tank)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What users of Modbus drivers ask for most, row by row (the list and its sources: docs/driver.md, What goes wrong):
+"""What users of Modbus drivers ask for most, row by row (the list and its sources: docs/driver-faults.md, What goes wrong):
 each against a device on a raw socket that misbehaves in that way."""
 import select
 import statistics

@@ -11,7 +11,7 @@ from support.latest import LatestDiagnostics, LatestStatus
 from support.patience import NO_TIMEOUT
 from support.topics import service
 
-INVALID, FAULT = 7, 8  # of PointStatus.quality: docs/driver.md
+INVALID, FAULT = 7, 8  # of PointStatus.quality: docs/driver-faults.md
 MAP = """
 name: {name}
 address: 127.0.0.1

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The output of `coupler plan`. docs/driver.md lists the fields of the JSON.
+// The output of `coupler plan`. docs/driver-reading.md lists the fields of the JSON.
 #pragma once
 
 #include <string>

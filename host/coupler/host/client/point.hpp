@@ -83,7 +83,7 @@ class Settable : public Base {
 
   /// The device has the value from `due` on: at most an hour ahead and not more than a millisecond past. A
   /// node that can does it by its own timer, and gives the point its value from before again after `duration`
-  /// if that is not 0; for every other device the client does it, without a duration (docs/driver.md).
+  /// if that is not 0; for every other device the client does it, without a duration (docs/driver-writes.md).
   PendingSchedule schedule(const T& value, host::Time due, std::chrono::milliseconds duration = {}) {
     return send_at(value, due, duration);
   }
