@@ -98,6 +98,12 @@ def main():
         twice("an address that an option gives", ["belt", "fan"], OTHER, motor, options=[f"coupler_belt.address:{OTHER}"])
         twice("a port that an option gives", ["cell", "saw"], OTHER, lamp, port=1503, options=["coupler_cell.port:1503"])
         twice("the port that another map has left", ["cell", "fan"], OTHER, blower, options=["coupler_cell.port:1503"])
+        for port in ("502,1502", "1502"):  # as it was necessary once, and may be in somebody's settings
+            checks.equal(f"with mbtcp.tcp.port:{port}",
+                         wireshark.shown(["saw"], OTHER, port=1502, options=[f"mbtcp.tcp.port:{port}"]), blade)
+            checks.equal(f"another port, with mbtcp.tcp.port:{port}",
+                         wireshark.shown(["saw"], OTHER, port=1503, options=["coupler_saw.port:1503", f"mbtcp.tcp.port:{port}"]),
+                         blade)
         checks.equal("one map names the messages of any device", wireshark.shown(["cell"], OTHER), lamp)
         hint = ("several maps are loaded for this port: belt, fan. Say where their devices are: "
                 "-o coupler_belt.address:ADDRESS -o coupler_fan.address:ADDRESS")

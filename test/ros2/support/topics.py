@@ -245,17 +245,18 @@ def service(name, kind, seconds=PATIENCE):
         raise NoService(name)
     fields = list(kind.Request.get_fields_and_field_types())
 
-    def call(*arguments, wait=PATIENCE):
+    def call(*arguments):
         # Fast DDS drops an answer if the service's end has not matched the client yet, though the client's end has. So a call
         # that seems lost is made once more.
         for _ in range(2):
             done = threading.Event()
             future = client.call_async(kind.Request(**dict(zip(fields, arguments))))
             future.add_done_callback(lambda _, done=done: done.set())
-            if done.wait(wait / 2):
+            if done.wait(PATIENCE / 2):
                 return future.result()
             client.remove_pending_request(future)
-        raise AssertionError(f"{name} has not answered in {wait} s")
+            print(f"{name} has not answered in {PATIENCE / 2} s: {arguments}")
+        raise AssertionError(f"{name} has not answered in {PATIENCE} s")
 
     return call
 

@@ -93,11 +93,28 @@ bool lets_read_without_tls(const Map& map) {
   return false;
 }
 
+void warn_of_rights(const Map& map, bool writes, ConversionWarnings& warnings) {
+  if (!map.security.present() || !map.security.plain) return;
+  const Role& role = map.security.roles[*map.security.plain];
+  for (std::size_t i = 0; i < map.points.size(); ++i) {
+    const Point& point = map.points[i];
+    if (is_readable(point) && !role.may(Right::read, i))
+      warnings.add("clients without TLS may not read these points, and the device will refuse it",
+                   "give the role of 'plain' the right to read them", point.name);
+    if (writes && is_writable(point) && !role.may(Right::write, i))
+      warnings.add("clients without TLS may not write these points, and the device will refuse it",
+                   "give the role of 'plain' the right to write them, if the program has to", point.name);
+  }
+}
+
 void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings) {
   if (map.connection.tls.present())
-    warnings.add("the map has TLS, and this format has not",
-                 fmt::format("port {}, without TLS, is written; a node lets in there whom its 'plain' says",
-                             port_without_tls(map)));
+    warnings.add(
+        "the map has TLS, and this format has not",
+        map.service.port == map.connection.port
+            ? "name the coupler's port without TLS, where a node lets in whom its 'plain' says"
+            : fmt::format("port {}, without TLS, is written; a node lets in there whom its 'plain' says",
+                          map.service.port));
   if (!map.limits.transaction_ids)
     warnings.add("the device does not repeat transaction ids, and other programs compare them",
                  "look for a gateway that repeats them, or an option of the other program");

@@ -93,6 +93,10 @@ void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings);
 /// Returns the device's port for programs that have no TLS.
 std::uint16_t port_without_tls(const Map& map);
 
+/// Warns of points that clients without TLS may not read, and, if the program `writes`, of those that they
+/// may not write.
+void warn_of_rights(const Map& map, bool writes, ConversionWarnings& warnings);
+
 /// Returns whether a client without TLS may read some point of the map.
 bool lets_read_without_tls(const Map& map);
 

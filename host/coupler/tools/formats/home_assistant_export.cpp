@@ -279,6 +279,7 @@ Export write_home_assistant(const Map& map) {
   warn_of_node_and_driver_keys(map, out.warnings);
   if (!entities.switches.empty()) warn_of_watchdog(map, out.warnings);
   warn_of_tools(map, out.warnings);
+  warn_of_rights(map, true, out.warnings);
   out.text = "# Made by `coupler export --to home-assistant`.\n" + hub_of(map);
   if (!entities.binary_sensors.empty()) out.text += "    binary_sensors:\n" + entities.binary_sensors;
   if (!entities.switches.empty()) out.text += "    switches:\n" + entities.switches;

@@ -62,6 +62,7 @@ class Writer {
     prefix_ = global(st::is_reserved(prefix_) ? prefix_ + "_map" : prefix_);
     name_points();
     warn_of_tools(map_, warnings_);
+    warn_of_rights(map_, true, warnings_);
     for (const Point& point : map_.points) warn_of_raw_meaning(point, false, warnings_);
     const Side inputs = side("read", "inputs", st::read_blocks(map_));
     const Side outputs = side("write", "outputs", st::write_blocks(map_));

@@ -189,6 +189,7 @@ void add_warnings(const Map& map, ConversionWarnings& warnings) {
     warnings.add("Telegraf limits the size of a read as Modbus does, not as the map does",
                  "use Telegraf's workaround one_request_per_field if the device refuses reads");
   warn_of_node_and_driver_keys(map, warnings);
+  warn_of_rights(map, false, warnings);
 }
 
 /// The names of a field's values, in a second field: what is computed with stays a number.

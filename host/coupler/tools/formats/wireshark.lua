@@ -6,15 +6,6 @@ local function connection(client, client_port, server, server_port)
   return tostring(client) .. ":" .. client_port .. ">" .. tostring(server) .. ":" .. server_port
 end
 
--- Wireshark's own dissector tells requests from replies by the port in its own settings, 502 at first.
-local function dissect_modbus(tvb, pinfo, tree)
-  local server_port = pinfo.dst_port == pinfo.match and "dst_port" or "src_port"
-  local port = pinfo[server_port]
-  pinfo[server_port] = 502
-  Dissector.get("mbtcp"):call(tvb, pinfo, tree)
-  pinfo[server_port] = port
-end
-
 local function dissect_points(tvb, pinfo, tree)
   local transaction = tvb(0, 2):uint()
   if pinfo.dst_port == pinfo.match then
@@ -44,8 +35,31 @@ end
 -- The maps -------------------------------------------------------------------------------------------------------------
 
 -- All that Wireshark has loaded, each from a script of its own: it keeps one dissector for a port, which serves them all.
-local maps = package.loaded.coupler_maps or {}
+local maps = package.loaded.coupler_maps or { modbus = {} }
 package.loaded.coupler_maps = maps
+local ports = DissectorTable.get("tcp.port")
+
+-- Remembers in maps.modbus whether the port is one of those in the settings of Wireshark's own dissector.
+local function look_at(port)
+  if maps.modbus[port] ~= nil then return end
+  local there = ports:get_dissector(port)
+  maps.modbus[port] = there ~= nil and tostring(there) == "Modbus/TCP"
+end
+
+-- Wireshark's own dissector tells requests from replies by the ports in its settings.
+local function dissect_modbus(tvb, pinfo, tree)
+  local server_port = pinfo.dst_port == pinfo.match and "dst_port" or "src_port"
+  local port = pinfo[server_port]
+  if not maps.modbus[port] then
+    pinfo[server_port] = 502
+    for each, is_modbus in pairs(maps.modbus) do
+      if is_modbus then pinfo[server_port] = each end
+    end
+  end
+  Dissector.get("mbtcp"):call(tvb, pinfo, tree)
+  pinfo[server_port] = port
+end
+
 local this = { name = map.name, protocol = map.proto, unit = map.unit, prefs = proto.prefs, dissect = dissect_points }
 table.insert(maps, this)
 
@@ -103,7 +117,6 @@ function proto.dissector(tvb, pinfo, tree)
   return tvb:len()
 end
 
-local ports = DissectorTable.get("tcp.port")
 ports:add_for_decode_as(proto)
 
 function this.leave_port()
@@ -112,13 +125,15 @@ end
 
 function this.take_port()
   this.port = proto.prefs.port
+  look_at(this.port)
   ports:add(this.port, proto)
 end
 
 -- One that leaves its port takes it from the others, too.
 local function register()
   if this.port == proto.prefs.port then return end
-  this.leave_port()
+  look_at(502)
+  for _, each in ipairs(maps) do each.leave_port() end
   for _, each in ipairs(maps) do each.take_port() end
 end
 
