@@ -62,6 +62,23 @@ std::string meant_option(const CLI::App& app, const std::string& given, Nearest 
   return {};
 }
 
+/// Returns what was given by the options of strays: of a shell's *.yaml they have got only the first. The
+/// signs around a list as "[a, 'b']", which can be written in place of "a,b", are left out.
+std::vector<std::string> given_values(const CLI::App& app, const OptionsOfStrays& of_strays) {
+  std::vector<std::string> values;
+  for (const std::string& name : {of_strays.one, of_strays.several}) {
+    const CLI::Option* option = name.empty() ? nullptr : app.get_option_no_throw(name);
+    if (option == nullptr) continue;
+    for (std::string value : option->results()) {
+      if (!value.empty() && value[0] == '[')
+        for (const char sign : {'[', ']', '\'', '"', ' '})
+          value.erase(std::remove(value.begin(), value.end(), sign), value.end());
+      if (!value.empty()) values.push_back(value);
+    }
+  }
+  return values;
+}
+
 /// Returns the proposal for the first of the arguments that is near to something; empty if none is.
 std::string proposal(const CLI::App& app, const std::vector<std::string>& extras, Nearest nearest,
                      const OptionsOfStrays& of_strays) {
@@ -72,10 +89,13 @@ std::string proposal(const CLI::App& app, const std::vector<std::string>& extras
   const bool are_strays = std::all_of(extras.begin(), extras.end(), [](const std::string& extra) {
     return !extra.empty() && extra[0] != '-';
   });
-  const std::string& option = extras.size() == 1 ? of_strays.one : of_strays.several;
-  if (!are_strays || option.empty()) return {};
+  if (!are_strays) return {};
+  std::vector<std::string> values = given_values(app, of_strays);
+  values.insert(values.end(), extras.begin(), extras.end());
+  const std::string& option = values.size() == 1 ? of_strays.one : of_strays.several;
+  if (option.empty()) return {};
   std::string list;
-  for (const std::string& extra : extras) list += (list.empty() ? "" : ",") + extra;
+  for (const std::string& value : values) list += (list.empty() ? "" : ",") + value;
   return option + ' ' + list;
 }
 

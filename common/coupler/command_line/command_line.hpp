@@ -98,7 +98,8 @@ class Program : public Command {
   void version(const std::string& text);
   /// Proposes the word that a wrong option or command is near to; `nearest` finds it, or is empty.
   void propose(Nearest nearest) { nearest_ = nearest; }
-  /// Proposes an option for a stray argument, "--map", and one that takes a list for several, "--maps".
+  /// Proposes an option for a stray argument, "--map", and one that takes a list for several, "--maps". What
+  /// these options were given counts as the first of several.
   void stray_is_of(const std::string& option, const std::string& of_several) {
     options_of_strays_ = {option, of_several};
   }

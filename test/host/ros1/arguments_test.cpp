@@ -32,6 +32,14 @@ TEST(Arguments, What_was_meant_by_an_unexpected_one_is_proposed) {
   EXPECT_THAT(parse({"tx8.yaml"}).text, HasSubstr("not expected: tx8.yaml; did you mean --map tx8.yaml?"));
   EXPECT_THAT(parse({"left.yaml", "right.yaml"}).text,
               HasSubstr("; did you mean --maps left.yaml,right.yaml?"));
+  // A shell makes a list of *.yaml, of which the option has got the first.
+  const auto three = HasSubstr("; did you mean --maps a.yaml,b.yaml,c.yaml?");
+  EXPECT_THAT(parse({"--maps", "a.yaml", "b.yaml", "c.yaml"}).text, three);
+  EXPECT_THAT(parse({"--map", "a.yaml", "b.yaml", "c.yaml"}).text, three);
+  EXPECT_THAT(parse({"_maps:=[a.yaml, 'b.yaml']", "c.yaml"}).text, three);
+  EXPECT_THAT(parse({"--maps", "left=a.yaml", "right=b.yaml"}).text,
+              HasSubstr("not expected: right=b.yaml; did you mean --maps left=a.yaml,right=b.yaml?"));
+  EXPECT_THAT(parse({"--map", "a.yaml", "b.yaml"}).text, HasSubstr("; did you mean --maps a.yaml,b.yaml?"));
   EXPECT_THAT(parse({"--mpa", "tx8.yaml"}).text,
               HasSubstr("not expected: --mpa tx8.yaml; did you mean --map?"));
   EXPECT_THAT(parse({"--mpa=tx8.yaml"}).text, HasSubstr("did you mean --map?"));
