@@ -257,10 +257,12 @@ def a_node_is_known(folder, map_file, command, checks):
 def a_node_is_scanned(folder, command, checks):
     draft = folder / "node.yaml"
     with peer.running_node(command) as port:
-        found = probe(f"tcp://127.0.0.1:{port}", "--scan", "--to", "200", "--known", "wide=305419896", "--out", draft)
-    checks.equal("scanned node: exit status", found.returncode, 0)
-    ranges = re.findall(r"readable: (.*)", found.stdout)
-    checks.equal("scanned node: its ranges", ranges, ["0 … 9, 20", "0 … 3", "0 … 4", "0 … 16"])
+        known = ("--known", "wide=305419896")
+        for call in (["--scan"], known, ["--from", "0"], [*known, "--to", "200", "--out", draft]):
+            found = probe(f"tcp://127.0.0.1:{port}", *call, "--stride", "1000")
+            checks.equal(f"scanned node, {call[0]}: exit status", found.returncode, 0)
+            ranges = re.findall(r"readable: (.*)", found.stdout)
+            checks.equal(f"scanned node, {call[0]}: its ranges", ranges, ["0 … 9, 20", "0 … 3", "0 … 4", "0 … 16"])
     checks.equal("scanned node: a value of its map", "wide: {address: 1, type: UDINT, access: read}" in draft.read_text(), True)
 
 

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "coupler/base/starts_with.hpp"
 #include "coupler/map/diagnostic.hpp"
 #include "coupler/map/network.hpp"
 #include "coupler/tools/unknown_device.hpp"
@@ -46,7 +47,10 @@ tl::expected<DeviceMap, Exit> get_device(std::string_view command, const DeviceA
   }
   const auto at = std::make_shared<const std::string>(node_argument(arguments.at, map.connection));
   if (!arguments.at.empty()) {
-    const auto device = parse_node_address(*at, map.connection);
+    Connection usual = map.connection;
+    // With TLS in the map its connection has the port for TLS, which is not the one of tcp://HOST.
+    if (usual.tls.present() && !starts_with(*at, "tls://")) usual.port = map.service.port;
+    const auto device = parse_node_address(*at, usual);
     if (!device) return refuse("--at: " + device.error().what, device.error().remedy);
     map = found_at(map, *device);
     if (device->tls && !map.connection.tls.present())

@@ -41,8 +41,10 @@ Failure neither(const std::string& argument, Failure why) {
   const auto node = parse_node_address(place);
   const bool is_address = node && (node->serial.present() || is_ip_address(node->host));
   if (names_a_node(argument) || is_address || why.exit == bad_input) return why;
+  const std::string near = near_file(argument);
   return {why.exit, "no such file, and as a device: " + why.what,
-          (why.remedy.empty() ? "" : why.remedy + "; ") + "or give the path of a map"};
+          (why.remedy.empty() ? "" : why.remedy + "; ") + "or give the path of a map" +
+              (near.empty() ? "" : "; " + near)};
 }
 
 MapArgument from_device(const std::string& argument, const TlsTexts& tls, const FindMap& find) {

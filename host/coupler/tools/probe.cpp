@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -32,7 +33,8 @@ namespace {
 Exit tell_of_node(const ProbeArguments& arguments, const std::string& report, Connection where) {
   std::FILE* const to = arguments.out == standard_output ? stderr : stdout;
   std::fputs(report.c_str(), to);
-  where.timeout = usual_timeout(where.is_rtu());  // a piece of a map is longer than what a scan asks for
+  // A piece of a map is longer than what a scan asks for; --timeout may have given more.
+  where.timeout = std::max(where.timeout, usual_timeout(where.is_rtu()));
   const auto map = fetch_live_map(where);
   if (!map) return complain("probe", map.error());
   if (!arguments.out.empty()) return save_map("probe", arguments.out, (*map)->map(), where);
@@ -102,6 +104,17 @@ Exit run(const ProbeArguments& arguments) {
   return exit;
 }
 
+void add_line_options(command_line::Command& command, ProbeArguments& arguments) {
+  command
+      .add_option("--baud", arguments.bauds,
+                  "On a serial line: rates to try (default: 9600,19200,115200,38400,57600,4800)")
+      .delimiter(',')
+      .type_name("N");
+  command.add_option("--parity", arguments.parities, "On a serial line: parities to try (default: none,even)")
+      .delimiter(',')
+      .type_name("WORD");
+}
+
 constexpr const char* example =
     "Example:\n  coupler probe 192.168.1.17 --known voltage=230.4 --known frequency=50.02 --out meter.yaml\n"
     "  coupler probe /dev/ttyUSB0 --baud 9600\n"
@@ -120,14 +133,14 @@ void add_probe(Program& program, Exit& exit) {
                   "Unit ids to ask, as 1-247 (default: 1, 255, 0; with RTU 1-247)")
       .delimiter(',')
       .type_name("N[-N]");
-  command.add_option("--from", arguments->from, "First address to look at")
-      .in_range(0, 65535)
-      .show_default()
-      .type_name("N");
-  command.add_option("--to", arguments->to, "Last address to look at, up to 65535")
-      .in_range(0, 65535)
-      .show_default()
-      .type_name("N");
+  const auto from = command.add_option("--from", arguments->from, "First address to look at")
+                        .in_range(0, 65535)
+                        .show_default()
+                        .type_name("N");
+  const auto to = command.add_option("--to", arguments->to, "Last address to look at, up to 65535")
+                      .in_range(0, 65535)
+                      .show_default()
+                      .type_name("N");
   command
       .add_option("--stride", arguments->stride,
                   "Where blocks are refused, try one address in N; 1 tries all")
@@ -143,15 +156,7 @@ void add_probe(Program& program, Exit& exit) {
                   "Longest wait for an answer, in seconds; default 1, on a serial line 0.1")
       .in_range(0.01, 60.0)
       .type_name("S");
-  command
-      .add_option("--baud", arguments->bauds,
-                  "On a serial line: rates to try (default: 9600,19200,115200,38400,57600,4800)")
-      .delimiter(',')
-      .type_name("N");
-  command
-      .add_option("--parity", arguments->parities, "On a serial line: parities to try (default: none,even)")
-      .delimiter(',')
-      .type_name("WORD");
+  add_line_options(command, *arguments);
   command
       .add_option("--known", arguments->known,
                   "A value that the device displays, to search for: 230.4, voltage=230.4, voltage=230.4±2")
@@ -163,11 +168,17 @@ void add_probe(Program& program, Exit& exit) {
                   "report is on standard error then")
       .type_name("FILE");
   command.add_flag("--force", arguments->force, "Replace an existing file");
-  command.add_flag("--scan", arguments->scan,
-                   "Also scan a node that serves its map; without it that map is all that is asked for");
+  command.add_flag(
+      "--scan", arguments->scan,
+      "Also scan a node that serves its map, as --known, --from and --to do; otherwise that map is "
+      "all that is asked for");
   add_tls_options(command, arguments->tls);
   command.footer(example);
-  command.callback([arguments, &exit] { exit = run(*arguments); });
+  command.callback([arguments, from, to, &exit] {
+    // What is to be found, or where, can only be meant for a scan.
+    if (!arguments->known.empty() || from.given() || to.given()) arguments->scan = true;
+    exit = run(*arguments);
+  });
 }
 
 }  // namespace coupler::tools

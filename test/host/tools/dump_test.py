@@ -46,6 +46,9 @@ class Dump(unittest.TestCase):
         self.refused(2, "a b: error: no such file, and as a device: the host 'a b' is not a host name; ", "a b")
         self.refused(3, "/dev/ttyUSB77: error: /dev/ttyUSB77: ", "/dev/ttyUSB77")
 
+    def test_a_slip_in_the_ending_of_a_map_is_told_with_the_map(self):
+        self.refused(2, "; or give the path of a map; did you mean cell.yaml?\n", "cell,yaml")
+
     def test_what_has_the_name_of_a_file_is_no_device(self):
         missing = "error: the file cannot be read: No such file or directory; give the path of a map"
         for file in ("press.yaml", "press.yml", "press.json", "./press", "maps/press", ""):

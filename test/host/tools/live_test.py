@@ -195,6 +195,14 @@ class ANode(Live):
         self.assertIn(node.removesuffix("/7"), done.stdout)
 
 
+class At(Live):
+    def test_without_TLS_has_the_port_without_TLS(self):
+        port = self.node().split(":")[2].removesuffix("/7")
+        (self.folder / "there.yaml").write_text(f"port: {port}\n" + TLS.replace("{", "{port: 1, ") + MAP, encoding="utf-8")
+        done = self.coupler("dump", "there.yaml", "--at", "tcp://127.0.0.1")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+
 class Fetch(Live):
     def test_saves_the_map_byte_for_byte(self):
         text = "# Größe\r\n" + SECURITY + MAP + "\n\n"
@@ -210,6 +218,13 @@ class Fetch(Live):
         place = node.removeprefix("tcp://")
         self.assertEqual(said[1], f"Next: `coupler dump saved.yaml --at {place}` shows its values; after a change "
                                   f"`coupler diff {place} saved.yaml` says what it means")
+
+    def test_of_a_map_with_TLS_says_how_to_ask_without(self):
+        node = self.node(MAP + TLS)
+        said = self.coupler("fetch", node.removeprefix("tcp://"), "-o", "saved.yaml").stderr.splitlines()
+        self.assertIn(f"`coupler dump saved.yaml --at {node}` shows", said[1])
+        done = self.coupler("dump", "saved.yaml", "--at", node)
+        self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_writes_to_standard_output(self):
         node = self.node()

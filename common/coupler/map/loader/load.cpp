@@ -45,31 +45,6 @@ tl::expected<std::string, int> read_file(const std::string& path) {
   return text;
 }
 
-/// Says which file beside the one that is not there has almost its name; empty if there is none.
-std::string near_file(const std::string& path) {
-  namespace fs = std::filesystem;
-  constexpr std::size_t most_files = 1000;
-  const std::array<std::string_view, 3> endings{".yaml", ".yml", ".json"};
-  const fs::path missing(path);
-  const fs::path folder = missing.parent_path();
-  std::error_code error;
-  fs::directory_iterator each(folder.empty() ? fs::path(".") : folder, error);
-  std::vector<std::string> names;
-  for (; !error && each != fs::directory_iterator() && names.size() < most_files; each.increment(error)) {
-    const fs::path name = each->path().filename();
-    std::error_code ignored;
-    if (std::find(endings.begin(), endings.end(), name.extension().string()) == endings.end() ||
-        !each->is_regular_file(ignored))
-      continue;
-    if (name.stem() == missing.filename() || name.stem() == missing.stem())
-      return fmt::format("did you mean {}?", (folder / name).string());
-    names.push_back(name.string());
-  }
-  const std::string_view near =
-      nearest(missing.filename().string(), std::vector<std::string_view>(names.begin(), names.end()));
-  return near.empty() ? std::string() : fmt::format("did you mean {}?", (folder / near).string());
-}
-
 LoadResult no_map(const std::string& path, std::string what, std::string remedy) {
   return {nullptr, {{Diagnostic::Severity::error, path, 0, 0, std::move(what), std::move(remedy)}}};
 }
@@ -127,6 +102,30 @@ LoadResult load(std::string_view file, LockFile lock, const loader::MapSource& s
 }
 
 }  // namespace
+
+std::string near_file(const std::string& path) {
+  namespace fs = std::filesystem;
+  constexpr std::size_t most_files = 1000;
+  const std::array<std::string_view, 3> endings{".yaml", ".yml", ".json"};
+  const fs::path missing(path);
+  const fs::path folder = missing.parent_path();
+  std::error_code error;
+  fs::directory_iterator each(folder.empty() ? fs::path(".") : folder, error);
+  std::vector<std::string> names;
+  for (; !error && each != fs::directory_iterator() && names.size() < most_files; each.increment(error)) {
+    const fs::path name = each->path().filename();
+    std::error_code ignored;
+    if (std::find(endings.begin(), endings.end(), name.extension().string()) == endings.end() ||
+        !each->is_regular_file(ignored))
+      continue;
+    if (name.stem() == missing.filename() || name.stem() == missing.stem())
+      return fmt::format("did you mean {}?", (folder / name).string());
+    names.push_back(name.string());
+  }
+  const std::string_view near =
+      nearest(missing.filename().string(), std::vector<std::string_view>(names.begin(), names.end()));
+  return near.empty() ? std::string() : fmt::format("did you mean {}?", (folder / near).string());
+}
 
 LoadResult load_map(std::string_view text, std::string_view file) { return load(file, LockFile{}, {text}); }
 

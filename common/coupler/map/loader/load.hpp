@@ -62,4 +62,8 @@ LoadResult load_map_with_lock(std::string_view text, std::string_view file, Lock
 /// cannot be read, or is a device, is a diagnostic. Nothing is written.
 LoadResult load_map_file(const std::string& path, LockUse use = LockUse::read, std::string_view name = {});
 
+/// Says which map beside the file that is not there has almost its name: "did you mean cell.yaml?". Empty if
+/// there is none.
+std::string near_file(const std::string& path);
+
 }  // namespace coupler
