@@ -106,7 +106,7 @@ TEST(Table, The_service_is_in_it) {
   EXPECT_THAT(source(),
               AllOf(HasSubstr("    \"10.0.0.7\",\n    \"fd00::/8\",\n"),
                     HasSubstr("{\"::1\", allow, {500ms, Watchdog::FedBy::write, Watchdog::Recovery::manual}, "
-                              "true}")));
+                              "true, 502}")));
 }
 
 TEST(Table, The_text_is_one_literal_a_line) {

@@ -17,9 +17,9 @@ using Outcome = SetResult::Outcome;
 TEST_F(PumpClient, Values_have_the_types_and_units_of_the_map) {
   auto& tables = server.tables();
   tables.tab_input_bits[0] = 1;
-  const std::uint16_t inputs[] = {0xFF38, 0, 0x3FC0, 0, 0xC000, 0x0001, 0x0000, 0x5678, 0x1234};
+  const std::uint16_t inputs[] = {0xFF38, 0x3FC0, 0, 0xC000, 0, 0x0000, 0x0001, 0x1234, 0x5678};
   std::copy(std::begin(inputs), std::end(inputs), tables.tab_input_registers);
-  const std::uint16_t text[] = {0x6241, 0x0063};  // the low byte first
+  const std::uint16_t text[] = {0x4162, 0x6300};
   std::copy(std::begin(text), std::end(text), tables.tab_registers + 1);
   pump.connect();
   EXPECT_EQ(pump.running.wait(soon)->value, true);
@@ -41,8 +41,8 @@ TEST_F(PumpClient, What_is_set_arrives) {
   const auto& tables = server.tables();
   EXPECT_EQ(tables.tab_bits[0], 1);
   EXPECT_EQ(tables.tab_registers[0], 800);
-  EXPECT_EQ(tables.tab_registers[1], 0x6F6E);
-  EXPECT_EQ(tables.tab_registers[3], 0x0068);
+  EXPECT_EQ(tables.tab_registers[1], 0x6E6F);
+  EXPECT_EQ(tables.tab_registers[3], 0x6800);
 }
 
 TEST_F(PumpClient, A_value_that_is_none_of_its_point_is_refused_and_the_range_named) {
