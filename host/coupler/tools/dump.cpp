@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fnmatch.h>
 #include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -25,6 +24,7 @@
 #include "coupler/host/core/device_thread.hpp"
 #include "coupler/host/modbus/make_links.hpp"
 #include "coupler/map/diagnostic.hpp"
+#include "coupler/map/name_pattern.hpp"
 #include "coupler/map/nearest.hpp"
 #include "coupler/map/node_address.hpp"
 #include "coupler/map/printable.hpp"
@@ -235,14 +235,8 @@ Exit again_and_again(const Map& original, const std::vector<bool>& chosen, bool 
 tl::expected<std::vector<bool>, std::string> choose(const Map& map,
                                                     const std::vector<std::string>& patterns) {
   std::vector<bool> chosen(map.points.size(), patterns.empty());
-  for (const std::string& pattern : patterns) {
-    bool found = false;
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-      if (::fnmatch(pattern.c_str(), std::string(map.points[i].name).c_str(), 0) != 0) continue;
-      found = chosen[i] = true;
-    }
-    if (!found) return tl::make_unexpected(pattern);
-  }
+  for (const std::string& pattern : patterns)
+    if (!mark_matching(pattern, map.points, chosen)) return tl::make_unexpected(pattern);
   return chosen;
 }
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // `security:`, who may read and write which points.
-#include <fnmatch.h>
-
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -10,14 +8,11 @@
 #include "coupler/map/fingerprint.hpp"
 #include "coupler/map/loader/map_reader.hpp"
 #include "coupler/map/loader/scalar.hpp"
+#include "coupler/map/name_pattern.hpp"
 #include "coupler/map/nearest.hpp"
 
 namespace coupler::loader {
 namespace {
-
-bool matches(std::string_view pattern, std::string_view name) {
-  return ::fnmatch(std::string(pattern).c_str(), std::string(name).c_str(), 0) == 0;
-}
 
 bool is_possible(const Point& point, Right right) {
   return right == Right::read ? is_readable(point) : is_writable(point);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/device/replay/replay.hpp"
 
-#include <fnmatch.h>
-
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -17,6 +15,7 @@
 #include "coupler/device/node/serving_context.hpp"
 #include "coupler/device/replay/player.hpp"
 #include "coupler/device/replay/replay_time.hpp"
+#include "coupler/map/name_pattern.hpp"
 
 namespace coupler::device {
 namespace {
@@ -58,13 +57,9 @@ tl::expected<ReplayOptions, ReplayError> understand(const ReplayArguments& argum
   }
   const Map& map = recording.map()->map();
   options.compared.assign(map.points.size(), arguments.points.empty());
-  for (const std::string& pattern : arguments.points) {
-    bool any = false;
-    for (std::size_t i = 0; i < map.points.size(); ++i)
-      if (::fnmatch(pattern.c_str(), std::string(map.points[i].name).c_str(), 0) == 0)
-        any = options.compared[i] = true;
-    if (!any) return problem(wrong_call, fmt::format("--points: no point matches '{}'", pattern));
-  }
+  for (const std::string& pattern : arguments.points)
+    if (!mark_matching(pattern, map.points, options.compared))
+      return problem(wrong_call, fmt::format("--points: no point matches '{}'", pattern));
   return options;
 }
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/host/ros/chosen_points.hpp"
 
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "coupler/map/name_pattern.hpp"
 #include "coupler/map/nearest.hpp"
 #include "coupler/map/printable.hpp"
 
@@ -36,13 +35,7 @@ ChosenPoints choose_points(const Map& map, const std::vector<std::string>& patte
   std::vector<std::string_view> names;
   for (const Point& point : map.points) names.push_back(point.name);
   for (const std::string& pattern : patterns) {
-    bool matches = false;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (::fnmatch(pattern.c_str(), std::string(names[i]).c_str(), 0) != 0) continue;
-      matches = true;
-      chosen.has[i] = true;
-    }
-    if (!matches)
+    if (!mark_matching(pattern, map.points, chosen.has))
       chosen.warnings.push_back(
           fmt::format("'topics' has {}, and no point has such a name; {}", excerpt(pattern),
                       nearest_or(pattern, names, "'coupler plan MAP' lists the points")));
