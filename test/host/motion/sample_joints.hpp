@@ -16,26 +16,11 @@ namespace coupler::host {
 
 /// A device with the tool clamp, and with the axes glue (off 0, on 1), mode (idle 0, slow 1, fast 4) and
 /// speed (a number); its values can be set.
-class SampleJoints : public testing::Test {
+class SampleJoints : public SampleDevice {
  protected:
-  SampleJoints() {
-    values.begin();
-    values.online(true);
-    tools.on_online(true, now());
-  }
+  SampleJoints() : SampleDevice(make_map()) { tools.on_online(true, now()); }
 
-  static Time now() { return std::chrono::steady_clock::now(); }
-  std::uint32_t index(std::string_view name) const {
-    return static_cast<std::uint32_t>(find(map->map(), name) - map->map().points.data());
-  }
-  /// The device has answered with this value now.
-  void read(std::string_view name, std::uint16_t value) {
-    const Point& point = map->map().points[index(name)];
-    const ReadSpan span{point.table, range(point), {index(name)}};
-    values.store(span, {&value, 1}, {now(), {}}, now());
-    const std::uint32_t which = index(name);
-    tools.on_values({&which, 1}, now());
-  }
+  void read(std::string_view name, std::uint16_t value) { read_for(tools, name, value); }
   /// A goal of one joint: its positions at 0, 1, 2 … seconds.
   static TrajectoryGoal goal(const std::string& joint, const std::vector<double>& positions) {
     TrajectoryGoal goal;
@@ -48,8 +33,6 @@ class SampleJoints : public testing::Test {
     return plan_trajectory(goal, joints);
   }
 
-  MapPtr map = make_map();
-  ValueTable values{map->map()};
   std::vector<Write> tool_writes;
   Tools tools{map->map(),
               values,

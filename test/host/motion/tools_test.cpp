@@ -34,24 +34,10 @@ MapPtr map_with_tools() {
 }
 
 /// Results of writes come when acknowledge() is called.
-struct ToolsTest : testing::Test {
-  ToolsTest() {
-    values.begin();
-    values.online(true);
-    tools.on_online(true, now());
-  }
+struct ToolsTest : SampleDevice {
+  ToolsTest() : SampleDevice(map_with_tools()) { tools.on_online(true, now()); }
 
-  static Time now() { return std::chrono::steady_clock::now(); }
-  std::uint32_t index(std::string_view name) const {
-    return static_cast<std::uint32_t>(find(map->map(), name) - map->map().points.data());
-  }
-  void read(Table table, std::uint16_t address, std::string_view name, bool on) {
-    const ReadSpan span{table, modbus::Range::of(address, 1), {index(name)}};
-    const std::uint16_t bit = on ? 1 : 0;
-    values.store(span, {&bit, 1}, {now(), {}}, now());
-    const std::uint32_t point = index(name);
-    tools.on_values({&point, 1}, now());
-  }
+  void read(std::string_view name, bool on) { read_for(tools, name, on ? 1 : 0); }
   void begin(std::size_t tool, ToolEnd end) {
     tools.begin(tool, end, now(), [this](const ToolResult& result) { results.push_back(result.text); });
   }
@@ -65,8 +51,6 @@ struct ToolsTest : testing::Test {
     }
   }
 
-  MapPtr map = map_with_tools();
-  ValueTable values{map->map()};
   std::vector<Write> writes;
   std::vector<std::string> asked;
   std::vector<std::pair<std::size_t, ToolState>> shown;
@@ -92,8 +76,8 @@ TEST_F(ToolsTest, A_goal_writes_its_outputs_and_asks_for_its_inputs) {
   EXPECT_TRUE(writes[0].ordered);
   acknowledge();
   EXPECT_THAT(asked, ElementsAre("sensor_closed", "sensor_open"));
-  read(Table::discrete_inputs, 1, "sensor_open", false);
-  read(Table::discrete_inputs, 0, "sensor_closed", true);
+  read("sensor_open", false);
+  read("sensor_closed", true);
   tools.step(now());
   EXPECT_THAT(results, ElementsAre(StartsWith("closed after ")));
 }
@@ -197,15 +181,15 @@ TEST_F(ToolsTest, Only_a_goal_that_runs_is_cancelled_and_only_by_its_sender) {
 
 TEST_F(ToolsTest, A_position_is_known_as_long_as_all_of_its_inputs_are) {
   EXPECT_FALSE(tools.position(0, now()));
-  read(Table::discrete_inputs, 0, "sensor_closed", false);
+  read("sensor_closed", false);
   EXPECT_FALSE(tools.position(0, now()));
   const Time before = now();
-  read(Table::discrete_inputs, 1, "sensor_open", true);
+  read("sensor_open", true);
   const auto first = tools.position(0, now());
   ASSERT_TRUE(first);
   EXPECT_EQ(first->position, 1);
   EXPECT_LE(first->at, before) << "the other input was read before";
-  read(Table::discrete_inputs, 0, "sensor_closed", false);
+  read("sensor_closed", false);
   EXPECT_GE(tools.position(0, now())->at, before);
   EXPECT_FALSE(tools.position(0, now() + std::chrono::hours(1))) << "nothing new has come";
   tools.on_gap(now());
@@ -213,13 +197,13 @@ TEST_F(ToolsTest, A_position_is_known_as_long_as_all_of_its_inputs_are) {
 }
 
 TEST_F(ToolsTest, A_position_has_no_newer_stamp_than_the_value_that_it_comes_from) {
-  read(Table::discrete_inputs, 0, "sensor_closed", false);
-  read(Table::discrete_inputs, 1, "sensor_open", true);
+  read("sensor_closed", false);
+  read("sensor_open", true);
   const Time before = now();
   const std::uint16_t off = 0;
   values.store({Table::discrete_inputs, modbus::Range::of(1, 1), {index("sensor_open")}}, {&off, 1},
                {now(), {}}, now());
-  read(Table::discrete_inputs, 0, "sensor_closed", false);
+  read("sensor_closed", false);
   const auto known = tools.position(0, now());  // of the new value nobody has told the tools yet
   ASSERT_TRUE(known);
   EXPECT_EQ(known->position, 1);
@@ -242,16 +226,16 @@ TEST_F(ToolsTest, A_state_is_shown_at_first_and_when_it_has_changed) {
   tools.step(now());
   EXPECT_THAT(shown, ElementsAre(std::pair(0U, ToolState::unknown), std::pair(1U, ToolState::unknown)));
   shown.clear();
-  read(Table::discrete_inputs, 0, "sensor_closed", true);
+  read("sensor_closed", true);
   tools.step(now());
   EXPECT_THAT(shown, ElementsAre(std::pair(0U, ToolState::closed)));
 }
 
 TEST_F(ToolsTest, A_value_that_says_nothing_new_wakes_nobody) {
-  read(Table::discrete_inputs, 0, "sensor_closed", true);
+  read("sensor_closed", true);
   tools.step(now());
   woken = 0;
-  read(Table::discrete_inputs, 0, "sensor_closed", true);
+  read("sensor_closed", true);
   EXPECT_EQ(woken, 0);
 }
 
