@@ -10,17 +10,11 @@ bin=$build/bin
 cd "$(dirname "$0")"
 # shellcheck source=plant.sh
 . ./plant.sh
-set +u
-# shellcheck disable=SC1091
-. "$build/devel/setup.bash"
-set -u
 plant_chip
 plant_node plant.yaml
 readonly not_begun='the device read a new map, lost or found a chip, or ended'
 
-# roscore gives its master 10 s to start, which this kernel may need on a busy machine.
-start core ../support/ros-master 11311
-check "a ROS master answers" wait_until says core http://
+plant_master "$build"
 recording=$check_folder/plant.jsonl
 # A busy machine's node is late, not lost.
 start driver "$bin/coupler_driver" _address:=127.0.0.1 _port:=1502 _timeout:="${patience}s" _record:="$recording"

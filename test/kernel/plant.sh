@@ -3,6 +3,7 @@
 # The chip of plant.yaml and a Modbus client, for the tests that run the project's programs. To be sourced:
 #   plant_chip                 makes the chip "plant" with 8 lines; line 2 is BUTTON, line 6 belongs to "hog-a"
 #   plant_node MAP [ARGS…]     starts the node with a map and waits until it serves
+#   plant_master BUILD_DIR     starts a ROS master, and makes the build's messages and programs known to this shell
 #   worker [NAME]              prints the id of the process that answers for the node (or NAME, as it was started)
 #   new_worker ID              there is one, and it is not that one
 #   input N, coil N            prints 0 or 1, as mbpoll reads it
@@ -18,6 +19,16 @@ plant_chip() {
   sim_name plant 2 BUTTON
   sim_hog plant 6 output-low hog-a
   sim_plug plant
+}
+
+plant_master() {
+  set +u
+  # shellcheck disable=SC1091
+  . "$1/devel/setup.bash"
+  set -u
+  # roscore gives its master 10 s to start, which this kernel may need on a busy machine.
+  start core "$(dirname "${BASH_SOURCE[0]}")/../support/ros-master" 11311
+  check "a ROS master answers" wait_until says core http://
 }
 
 plant_node() {

@@ -10,17 +10,12 @@ bin=$build/bin
 cd "$(dirname "$0")"
 # shellcheck source=plant.sh
 . ./plant.sh
-set +u
-# shellcheck disable=SC1091
-. "$build/devel/setup.bash"
-set -u
 export COUPLER_BUILD_DIR=$build PYTHONDONTWRITEBYTECODE=1
 plant_chip
 map=$check_folder/plant.yaml
 { cat plant.yaml; echo 'axes: {lamp: {point: lamp}, inverted: {point: inverted}}'; } >"$map"
 plant_node "$map"
-start core ../support/ros-master 11311
-check "a ROS master answers" wait_until says core http://
+plant_master "$build"
 start driver "$bin/coupler_driver" _map:="$map" _timeout:="${patience}s" # a busy machine's node is late
 check "the driver connects" wait_until says driver 'connected'
 

@@ -9,14 +9,9 @@ bench=$build/test/bin
 here=$(cd "$(dirname "$0")" && pwd)
 # shellcheck source=../../kernel/plant.sh
 . "$here/../../kernel/plant.sh"
-set +u
-# shellcheck disable=SC1091
-. "$build/devel/setup.bash"
-set -u
 sim_create plant 8
 plant_node "$here/plant.yaml"
-start core "$here/../../support/ros-master" 11311
-check "a ROS master answers" wait_until says core http://
+plant_master "$build"
 start driver "$bin/coupler_driver" _map:="$here/plant.yaml" _timeout:="${patience}s" # a busy machine's node is late
 check "the driver connects" wait_until says driver 'connected'
 chip=/dev/$(sim_chip plant)
