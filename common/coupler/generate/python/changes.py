@@ -67,10 +67,7 @@ class Changes(Iterator[Change]):
     def _begin(self) -> None:
         """Reads everything, after the number of the newest change: what changes meanwhile is told."""
         if self._client._tells_changes():
-            try:
-                self._socket = self._client._new_modbus().socket
-            except OSError as error:
-                raise error if isinstance(error, NotConnected) else self._client._not_connected(error) from error
+            self._socket = self._client._connected_modbus().socket
             self._hear(0.0)
         self._begun = True
         self._poll(list(self._points))

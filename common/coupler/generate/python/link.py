@@ -29,22 +29,21 @@ class _Link:
 
     def _open(self) -> None:
         """Connects. Raises NotConnected."""
+        self._modbus = self._connected_modbus()
+        self._next_request = max(self._next_request, time.monotonic() + self._connect_delay)
+
+    def _connected_modbus(self) -> Any:
+        """Returns a client of pymodbus that is connected. Raises NotConnected."""
         try:
-            modbus = self._new_modbus()
+            return self._new_modbus()
         except NotConnected:
             raise
         except (OSError, ValueError) as error:
-            raise self._not_connected(error) from error
-        self._modbus = modbus
-        self._next_request = max(self._next_request, time.monotonic() + self._connect_delay)
-
-    def _not_connected(self, error: Exception) -> NotConnected:
-        why = getattr(error, "strerror", None) or error
-        return NotConnected(f"cannot connect to {self._place()}: {why}; check {self._advice()}",
-                            _number_of(error))
+            why = getattr(error, "strerror", None) or error
+            raise NotConnected(f"cannot connect to {self._place()}: {why}; check {self._advice()}",
+                               _number_of(error)) from error
 
     def _new_modbus(self) -> Any:
-        """Returns a client of pymodbus that is connected."""
         return self._on_socket()
 
     def _on_socket(self, **options: Any) -> Any:

@@ -16,8 +16,7 @@ class Tls:
     def __post_init__(self) -> None:
         if not self.certificate or not self.key or bool(self.ca) == bool(self.pin):
             raise ValueError("tls: give the certificate, its key, and either 'ca' or 'pin'")
-        digits = self.pin.replace(":", "").lower()[len("sha256"):]
-        if self.pin and not (self.pin.startswith("sha256:") and re.fullmatch("[0-9a-f]{64}", digits)):
+        if self.pin and not (self.pin.startswith("sha256:") and re.fullmatch("[0-9a-f]{64}", self._pinned())):
             raise ValueError("tls: a pin is 'sha256:' and 64 hexadecimal digits")
 
     def context(self) -> ssl.SSLContext:
@@ -43,8 +42,12 @@ class Tls:
     def check_pin(self, certificate: bytes | None) -> None:
         """Raises OSError if the device has shown another certificate than that of the pin."""
         shown = "sha256:" + hashlib.sha256(certificate or b"").hexdigest()
-        if self.pin and shown[7:] != self.pin.replace(":", "").lower()[len("sha256"):]:
+        if self.pin and shown[len("sha256:"):] != self._pinned():
             raise OSError(f"the device's certificate has the pin {shown}, not that of tls")
+
+    def _pinned(self) -> str:
+        """The digits of the pin."""
+        return self.pin.replace(":", "").lower()[len("sha256"):]
 
 
 def _number_of(error: BaseException) -> int | None:
