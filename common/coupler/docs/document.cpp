@@ -103,7 +103,7 @@ FactGroup service(const Map& map) {
   const auto role_of = [&](std::optional<std::uint16_t> role) {
     return role ? std::string(map.security.roles[*role].name) : "may do nothing";
   };
-  if (service.port != map.connection.port)
+  if (map.connection.tls.present() && service.port != map.connection.port)
     group.facts.push_back({"Port without TLS", fmt::to_string(service.port)});
   if (map.security.files.present()) group.facts.push_back({"TLS at port", fmt::to_string(map.security.port)});
   if (map.security.files.present())

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/map/escape.hpp"
 #include "coupler/map/printable.hpp"
 
 namespace coupler::generate {
@@ -70,19 +71,10 @@ std::string literal_lines(std::string_view text, std::string_view indent) {
 }
 
 std::string python_literal(std::string_view text) {
-  std::string out = "\"";
-  for (std::size_t at = 0; at < text.size();) {
-    const Character c = character_at(text, at);
-    const std::string_view bytes = text.substr(at, c.size);
-    at += c.size;
-    if (bytes == "\"" || bytes == "\\")
-      out.append("\\").append(bytes);
-    else if (!c.valid || is_control(c.code) || turns_direction(c.code))
-      out += fmt::format("\\U{:08x}", static_cast<std::uint32_t>(c.code));
-    else
-      out += bytes;
-  }
-  return out + '"';
+  return double_quoted(text, [](const Character& c, std::string_view /*bytes*/) {
+    const bool is_shown = c.valid && !is_control(c.code) && !turns_direction(c.code);
+    return is_shown ? std::string() : fmt::format("\\U{:08x}", static_cast<std::uint32_t>(c.code));
+  });
 }
 
 std::string comment(std::string_view text) {

@@ -260,4 +260,9 @@ constexpr const Tool* tool_with_output(const Map& map, std::string_view point) {
   return nullptr;
 }
 
+/// Returns the device's port for programs that have no TLS.
+constexpr std::uint16_t port_without_tls(const Map& map) {
+  return map.connection.tls.present() ? map.service.port : map.connection.port;
+}
+
 }  // namespace coupler

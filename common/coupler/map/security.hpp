@@ -57,6 +57,8 @@ struct Security {
       if (role.name == name) return &role;
     return no_role ? &roles[*no_role] : nullptr;
   }
+  /// Returns the rights of clients without TLS; nullptr if they have none.
+  constexpr const Role* plain_role() const { return plain ? &roles[*plain] : nullptr; }
 };
 
 /// How a client proves itself to a device, and the device to it (Modbus/TCP Security).

@@ -48,8 +48,7 @@ tl::expected<DeviceMap, Exit> get_device(std::string_view command, const DeviceA
   const auto at = std::make_shared<const std::string>(node_argument(arguments.at, map.connection));
   if (!arguments.at.empty()) {
     Connection usual = map.connection;
-    // With TLS in the map its connection has the port for TLS, which is not the one of tcp://HOST.
-    if (usual.tls.present() && !starts_with(*at, "tls://")) usual.port = map.service.port;
+    if (!starts_with(*at, "tls://")) usual.port = port_without_tls(map);
     const auto device = parse_node_address(*at, usual);
     if (!device) return refuse("--at: " + device.error().what, device.error().remedy);
     map = found_at(map, *device);

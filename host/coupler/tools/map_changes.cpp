@@ -103,7 +103,9 @@ void add_all_fields(const Map& older, const Map& newer, std::vector<Change>& cha
   add_fields(older.limits, newer.limits, {}, changes);
   add_fields(older, newer, {}, changes);
   add_fields(older.service, newer.service, {}, changes);
-  const auto has_two_ports = [](const Map& map) { return map.service.port != map.connection.port; };
+  const auto has_two_ports = [](const Map& map) {
+    return map.connection.tls.present() && map.service.port != map.connection.port;
+  };
   if (older.service.port != newer.service.port && (has_two_ports(older) || has_two_ports(newer)))
     changes.push_back({"connection-changed", Severity::compatible, "",
                        fmt::format("port {} without TLS", older.service.port),

@@ -46,6 +46,20 @@ TEST(Facts, A_map_with_wiring_is_served_by_a_node_with_an_identity_area) {
   EXPECT_EQ(told(map, "Watchdog reset"), "-");
 }
 
+TEST(Facts, A_port_without_TLS_is_told_where_the_host_uses_TLS) {
+  auto builder = fakes::MapBuilder();
+  builder.add(Table::coils, "lamp", 0, codec::Type::BOOL, [](Point& point) { point.line.name = "GPIO17"; });
+  builder.head().connection.port = 1802;  // as it is also where a node was reached
+  builder.head().service.port = 1502;
+  EXPECT_EQ(told(builder.build(), "Port without TLS"), "-");
+  auto secured = fakes::MapBuilder();
+  secured.add(Table::coils, "lamp", 0, codec::Type::BOOL, [](Point& point) { point.line.name = "GPIO17"; });
+  secured.head().connection.port = 1802;
+  secured.head().service.port = 1502;
+  secured.head().connection.tls.certificate = "cell1.pem";
+  EXPECT_EQ(told(secured.build(), "Port without TLS"), "1502");
+}
+
 TEST(Facts, A_watchdog_with_manual_recovery_says_how_it_is_reset) {
   const auto map = fakes::MapBuilder()
                        .many(Table::coils, 0, 1)

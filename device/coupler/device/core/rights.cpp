@@ -9,7 +9,7 @@ namespace coupler::device {
 
 Rights::Rights(const Map& map, const ClientSession& client)
     : map_(map), role_(client.role), are_limited_(map.security.present()) {
-  if (client.is_plain) role_ = map.security.plain ? &map.security.roles[*map.security.plain] : nullptr;
+  if (client.is_plain) role_ = map.security.plain_role();
 }
 
 bool Rights::may(Right right, const Point& point) const {

@@ -129,16 +129,16 @@ void NodeRuntime::beat() {
 /// Somebody who limits what can be written, but leaves some of it to everybody, should know that.
 void NodeRuntime::warn_of_open_outputs() {
   const Security& security = context_->map->security;
-  if (!security.plain) return;
-  const Role& role = security.roles[*security.plain];
+  const Role* role = security.plain_role();
+  if (role == nullptr) return;
   const auto may = [&](const Point& point) {
     return is_writable(point) &&
-           role.may(Right::write, static_cast<std::size_t>(&point - context_->map->points.begin()));
+           role->may(Right::write, static_cast<std::size_t>(&point - context_->map->points.begin()));
   };
   const auto count = std::count_if(context_->map->points.begin(), context_->map->points.end(), may);
   if (count > 0)
     log_.warn(fmt::format("{} may write {} point{}, as {}; `coupler check` shows which",
-                          plain_clients(security), count, count == 1 ? "" : "s", role.name));
+                          plain_clients(security), count, count == 1 ? "" : "s", role->name));
 }
 
 /// If this process died later, nobody would drive the outputs. What started the node starts it again.

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/map/escape.hpp"
 #include "coupler/map/fields.hpp"
 #include "coupler/map/printable.hpp"
 
@@ -80,28 +81,23 @@ const Exporter* find_exporter(std::string_view name) {
   return found == std::end(formats) ? nullptr : found;
 }
 
-std::uint16_t port_without_tls(const Map& map) {
-  return map.connection.tls.present() ? map.service.port : map.connection.port;
-}
-
 bool lets_read_without_tls(const Map& map) {
   if (!map.security.present()) return true;
-  if (!map.security.plain) return false;
-  const Role& role = map.security.roles[*map.security.plain];
-  for (std::size_t i = 0; i < map.points.size(); ++i)
-    if (role.may(Right::read, i)) return true;
+  const Role* role = map.security.plain_role();
+  for (std::size_t i = 0; role != nullptr && i < map.points.size(); ++i)
+    if (role->may(Right::read, i)) return true;
   return false;
 }
 
 void warn_of_rights(const Map& map, bool writes, ConversionWarnings& warnings) {
-  if (!map.security.present() || !map.security.plain) return;
-  const Role& role = map.security.roles[*map.security.plain];
+  const Role* role = map.security.plain_role();
+  if (role == nullptr) return;
   for (std::size_t i = 0; i < map.points.size(); ++i) {
     const Point& point = map.points[i];
-    if (is_readable(point) && !role.may(Right::read, i))
+    if (is_readable(point) && !role->may(Right::read, i))
       warnings.add("clients without TLS may not read these points, and the device will refuse it",
                    "give the role of 'plain' the right to read them", point.name);
-    if (writes && is_writable(point) && !role.may(Right::write, i))
+    if (writes && is_writable(point) && !role->may(Right::write, i))
       warnings.add("clients without TLS may not write these points, and the device will refuse it",
                    "give the role of 'plain' the right to write them, if the program has to", point.name);
   }
@@ -161,22 +157,14 @@ std::string UniqueNames::make(const std::string& name, std::string_view point) {
 }
 
 std::string double_quoted(std::string_view text, std::string_view control, Escapes escapes) {
-  std::string out = "\"";
-  for (std::size_t at = 0; at < text.size();) {
-    const Character c = character_at(text, at);
-    const std::string_view bytes = text.substr(at, c.size);
-    at += c.size;
-    if (bytes == "\"" || bytes == "\\")
-      out.append("\\").append(bytes);
-    else if (!turns_direction(c.code) && c.code >= 0x20 && c.code != 0x7F)
-      out += bytes;
-    else if (escapes == Escapes::characters)
-      out += fmt::format(fmt::runtime(control), static_cast<unsigned>(c.code));
-    else
-      for (const char byte : bytes)
-        out += fmt::format(fmt::runtime(control), static_cast<unsigned>(static_cast<unsigned char>(byte)));
-  }
-  return out + '"';
+  return coupler::double_quoted(text, [&](const Character& c, std::string_view bytes) {
+    const auto escaped = [control](unsigned number) { return fmt::format(fmt::runtime(control), number); };
+    std::string out;
+    if (!turns_direction(c.code) && c.code >= 0x20 && c.code != 0x7F) return out;
+    if (escapes == Escapes::characters) return escaped(static_cast<unsigned>(c.code));
+    for (const char byte : bytes) out += escaped(static_cast<unsigned char>(byte));
+    return out;
+  });
 }
 
 }  // namespace coupler::formats

@@ -90,9 +90,6 @@ const Exporter* find_exporter(std::string_view name);
 /// for it.
 void warn_of_node_and_driver_keys(const Map& map, ConversionWarnings& warnings);
 
-/// Returns the device's port for programs that have no TLS.
-std::uint16_t port_without_tls(const Map& map);
-
 /// Warns of points that clients without TLS may not read, and, if the program `writes`, of those that they
 /// may not write.
 void warn_of_rights(const Map& map, bool writes, ConversionWarnings& warnings);
