@@ -49,7 +49,7 @@ void add_status(Program& program, Exit& exit) {
   add_absent(program, exit, "status", "Show what a node says about itself", "libmodbus", "libmodbus-dev");
 }
 
-tl::expected<MapPtr, Failure> fetch_live_map(const Connection& /*where*/) {
+tl::expected<MapPtr, Failure> fetch_live_map(Connection /*where*/) {
   return fail(failed, "this program was built without libmodbus and cannot ask a device",
               "install libmodbus-dev and build it again, or give the map's file");
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/tools/live_map.hpp"
 
+#include <algorithm>
 #include <string>
 #include <variant>
 
@@ -56,7 +57,10 @@ tl::expected<MapPtr, Failure> map_in(const Fetched& served, const Connection& wh
 
 }  // namespace
 
-tl::expected<MapPtr, Failure> fetch_live_map(const Connection& where) { return map_in(fetch(where), where); }
+tl::expected<MapPtr, Failure> fetch_live_map(Connection where) {
+  where.timeout = std::max(where.timeout, usual_timeout(where.is_rtu()));
+  return map_in(fetch(where), where);
+}
 
 tl::expected<MapPtr, Failure> fetch_map_if_node(const Connection& where) {
   const Fetched served = fetch(where);

@@ -35,7 +35,8 @@ tl::expected<FoundMap, Failure> served_map(const Place& place) {
   return FoundMap{*std::move(map), place.connection};
 }
 
-/// What was neither a file nor a device that can be reached. An address cannot be meant as a file.
+/// Returns the failure of an argument that is neither a file nor a device that can be reached. An address
+/// cannot be meant as a file.
 Failure neither(const std::string& argument, Failure why) {
   const std::string place = node_argument(argument);
   const auto node = parse_node_address(place);

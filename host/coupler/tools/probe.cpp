@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -30,11 +29,9 @@ namespace {
 
 /// Says what a node is, which has been found in place of an unknown device, and saves its map if that is
 /// asked for. `report`: what the scan has to say.
-Exit tell_of_node(const ProbeArguments& arguments, const std::string& report, Connection where) {
+Exit tell_of_node(const ProbeArguments& arguments, const std::string& report, const Connection& where) {
   std::FILE* const to = arguments.out == standard_output ? stderr : stdout;
   std::fputs(report.c_str(), to);
-  // A piece of a map is longer than what a scan asks for; --timeout may have given more.
-  where.timeout = std::max(where.timeout, usual_timeout(where.is_rtu()));
   const auto map = fetch_live_map(where);
   if (!map) return complain("probe", map.error());
   if (!arguments.out.empty()) return save_map("probe", arguments.out, (*map)->map(), where);
@@ -175,7 +172,7 @@ void add_probe(Program& program, Exit& exit) {
   add_tls_options(command, arguments->tls);
   command.footer(example);
   command.callback([arguments, from, to, &exit] {
-    // What is to be found, or where, can only be meant for a scan.
+    // These options can only be meant for a scan.
     if (!arguments->known.empty() || from.given() || to.given()) arguments->scan = true;
     exit = run(*arguments);
   });

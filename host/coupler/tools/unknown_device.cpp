@@ -58,8 +58,7 @@ tl::expected<FoundMap, Failure> found_node(std::string_view command, MapPtr map,
   return FoundMap{std::move(map), where};
 }
 
-tl::expected<FoundMap, Failure> map_of_node(std::string_view command, Connection where) {
-  where.timeout = usual_timeout(where.is_rtu());  // a piece of a map is longer than what a scan asks for
+tl::expected<FoundMap, Failure> map_of_node(std::string_view command, const Connection& where) {
   auto map = fetch_live_map(where);
   if (!map) return tl::make_unexpected(std::move(map.error()));
   return found_node(command, std::move(*map), where);

@@ -194,25 +194,22 @@ void check_included_hubs(const HomeAssistantFile& file, Problems& problems) {
   take_tags_out(places, file.tags, problems);
 }
 
-/// Takes the hub's name off the names of its entities, if all of them begin with it, as an export has them.
-void shorten_names(Entry& hub) {
+/// Returns what the names of all entities begin with if an export has made them: that of the hub; else
+/// nothing.
+std::string prefix_of_names(const Entry& hub) {
   const std::string prefix = name_of(hub) + " ";
-  std::vector<Entry*> names;
-  for (Entry& platform : hub.children) {
-    if (std::none_of(entity_platforms().begin(), entity_platforms().end(),
-                     [&](std::string_view each) { return each == platform.key; }))
-      continue;
-    const bool is_list = platform.kind == Entry::Kind::list;
-    for (Entry* entity = is_list ? platform.children.data() : &platform;
-         entity != (is_list ? platform.children.data() + platform.children.size() : &platform + 1); ++entity)
-      for (Entry& key : entity->children)
-        if (key.key == "name") names.push_back(&key);
-  }
-  const auto begins = [&](const Entry* name) {
-    return name->text.size() > prefix.size() && starts_with(name->text, prefix);
-  };
-  if (!std::all_of(names.begin(), names.end(), begins)) return;
-  for (Entry* name : names) name->text.erase(0, prefix.size());
+  for (const std::string_view platform : entity_platforms())
+    if (const Entry* entities = loader::child(hub, platform))
+      for (const Entry& entity : list_of(*entities))
+        if (const Entry* name = loader::child(entity, "name"))
+          if (name->text.size() <= prefix.size() || !starts_with(name->text, prefix)) return {};
+  return prefix;
+}
+
+Entry without_prefix(Entry entity, const std::string& prefix) {
+  for (Entry& key : entity.children)
+    if (key.key == "name") key.text.erase(0, prefix.size());
+  return entity;
 }
 
 std::vector<ForeignUnit> read_hub(const Entry& hub, Problems& problems) {
@@ -222,11 +219,13 @@ std::vector<ForeignUnit> read_hub(const Entry& hub, Problems& problems) {
     problems.warning(secret.first->at, "the unit id is a secret, which is not read, so it is left out",
                      "give it with --unit, or write it into the map");
   const std::vector<Entry> device = HubReader(hub, problems).read();
+  const std::string prefix = prefix_of_names(hub);
   HubPoints points;
   ConversionWarnings losses;
   for (const std::string_view platform : entity_platforms())
     if (const Entry* entities = loader::child(hub, platform))
-      for (const Entry& entity : list_of(*entities)) add_entity(platform, entity, points, losses, problems);
+      for (const Entry& entity : list_of(*entities))
+        add_entity(platform, without_prefix(entity, prefix), points, losses, problems);
   for (auto& each : points) each.second.settle(problems);
   for (const Diagnostic& loss : losses.diagnostics(""))
     problems.warning({loss.line, loss.column}, loss.what, loss.remedy);
@@ -267,7 +266,6 @@ std::vector<ForeignUnit> read_home_assistant(std::string_view text, const Import
   if (chosen == nullptr) return {};
   Entry hub = *chosen;
   take_tags_out(hub, file->tags, problems);
-  shorten_names(hub);
   return read_hub(hub, problems);
 }
 
