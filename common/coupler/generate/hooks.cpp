@@ -35,8 +35,8 @@ static_assert(fingerprint == 0x{fingerprint:016x}, "{name}_hooks and {name}_map 
 /// is called once more with the value before.
 /// set_POINT(value): from any thread; clients read it from then on. The error says what is wrong with the value.
 ///
-/// Where a point has a line, set_POINT(level) drives an output before the next request is answered, get_POINT() is the
-/// last known level, and on_POINT(level) of an input is called when its line has changed.
+/// Points with a line: set_POINT(level) drives an output before the next request is answered, get_POINT() is the last
+/// known level, and on_POINT(level) of an input is called when its line has changed.
 class NodeHooks : public ::coupler::device::PointHooks {{
  public:
   NodeHooks() : PointHooks(::coupler::maps::{name}::map) {{}}

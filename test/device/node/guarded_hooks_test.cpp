@@ -28,6 +28,10 @@ class Throwing : public PointHooks {
   bool accept(std::uint32_t, const std::uint16_t* registers) override {
     if (registers[0] > 100) throw std::out_of_range("too fast");
     if (registers[0] == 14) return refuse("14 is taken");
+    if (registers[0] == 15) {
+      (void)refuse("15 is taken");
+      throw std::out_of_range("and lost");
+    }
     return registers[0] != 13;
   }
   bool answers() override {
@@ -77,6 +81,14 @@ TEST_F(Guarded, A_hook_that_throws_refuses_and_is_told) {
 TEST_F(Guarded, The_reason_of_a_refusal_is_told_once) {
   EXPECT_FALSE(accept(14));
   EXPECT_THAT(log_.lines, ElementsAre("a write of point 'speed' is refused: 14 is taken"));
+  EXPECT_FALSE(accept(13));
+  EXPECT_EQ(log_.lines.size(), 1U);
+}
+
+TEST_F(Guarded, The_reason_that_a_hook_gave_before_it_threw_is_not_that_of_the_next_refusal) {
+  EXPECT_FALSE(accept(15));
+  EXPECT_THAT(log_.lines,
+              ElementsAre("the hook of point 'speed' threw an exception: and lost; the write is refused"));
   EXPECT_FALSE(accept(13));
   EXPECT_EQ(log_.lines.size(), 1U);
 }

@@ -11,7 +11,7 @@ using modbus::Range;
 
 namespace {
 
-/// Where there is a line, the firmware is asked before it is driven.
+/// Returns whether the firmware is asked before the output is written; that of a line is then driven.
 bool is_asked_about(const Point& point) {
   return is_hooked_output(point) || (is_writable(point) && point.line.present());
 }

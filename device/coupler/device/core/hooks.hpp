@@ -56,8 +56,8 @@ class Hooks {
   /// once, for the log.
   [[nodiscard]] virtual std::string_view take_reason() { return {}; }
 
-  /// What the firmware wants outputs with a line to have, which is driven in this order. It is valid until
-  /// the next call, and is handed out once.
+  /// Returns the levels that the firmware wants outputs with a line to have, which are driven in this order.
+  /// They are valid until the next call, and are handed out once.
   [[nodiscard]] virtual Span<const WantedOutput> take_wanted_outputs() { return {}; }
 
   /// This output was not driven, because the watchdog keeps it in its safe state, or else because its line

@@ -70,15 +70,17 @@ bool GuardedHooks::accept(std::uint32_t point, const std::uint16_t* registers) {
     log_limited(fmt::format("the hook of point '{}'", map_.points[point].name),
                 fmt::format("{}; the write is refused", what));
   };
-  if (!guard([&] { accepted = hooks_.accept(point, registers); }, thrown)) return false;
+  const bool was_asked = guard([&] { accepted = hooks_.accept(point, registers); }, thrown);
+  // Also of a hook that has thrown: otherwise it would be the reason of the next refusal.
   const std::string_view why = hooks_.take_reason();
+  if (!was_asked) return false;
   if (!accepted && !why.empty())
     log_.warn_limited("refusal",
                       fmt::format("a write of point '{}' is refused: {}", map_.points[point].name, why));
   return accepted;
 }
 
-/// Who cannot react to an input leaves outputs as they should not be.
+/// Outputs go to their safe state after a throw, since nothing has reacted to the input.
 bool GuardedHooks::take_level(std::uint32_t point, bool level, bool is_news) {
   return guard([&] { (void)hooks_.take_level(point, level, is_news); },
                [&](const char* what) {

@@ -183,7 +183,8 @@ void IoService::turn() {
   log_trips();
 }
 
-/// What the firmware wanted before its code failed does not bring outputs back.
+/// The outputs that the firmware wanted before its code failed are dropped, or they would undo the safe
+/// state.
 void IoService::tell_firmware() {
   if (hooked_->tell_levels(changes_.ring())) return;
   (void)hooked_->take_wanted_outputs();

@@ -68,8 +68,8 @@ class PointHooks : public Hooks {
   /// The map outlives it.
   explicit PointHooks(const Map& map);
 
-  /// For on_POINT: returns false, and the log says why the write was refused. Only in the thread that answers
-  /// clients.
+  /// Returns false, for on_POINT to return it, and the log says why the write was refused. It may be called
+  /// only in the thread that answers clients.
   bool refuse(std::string_view why) {
     reason_ = why;
     has_reason_ = true;
