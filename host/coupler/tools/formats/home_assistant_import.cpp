@@ -197,7 +197,7 @@ void check_included_hubs(const HomeAssistantFile& file, Problems& problems) {
 /// Returns what the names of all entities begin with if an export has made them: that of the hub; else
 /// nothing.
 std::string prefix_of_names(const Entry& hub) {
-  const std::string prefix = name_of(hub) + " ";
+  std::string prefix = name_of(hub) + " ";
   for (const std::string_view platform : entity_platforms())
     if (const Entry* entities = loader::child(hub, platform))
       for (const Entry& entity : list_of(*entities))
