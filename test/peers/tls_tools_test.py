@@ -6,6 +6,7 @@ certificates.
     tls_tools_test.py NODE COUPLER MAP
 """
 import contextlib
+import datetime
 import json
 import pathlib
 import re
@@ -18,6 +19,7 @@ import tempfile
 import zlib
 
 import peer
+from authority import Authority
 from tls_node import Node, make_certificates
 
 NODE, COUPLER, MAP = sys.argv[1:4]
@@ -149,8 +151,64 @@ def what_a_killed_call_leaves(folder, checks):
     told = subprocess.run(call, cwd=folder, capture_output=True, text=True)
     checks.equal(f"then it makes all: {told.stderr}", told.returncode, 0)
     checks.equal("nothing else is left", [file.name for file in (folder / "cut_short").rglob(".*")], [])
-    checks.equal("whole", subprocess.run(["openssl", "verify", "-CAfile", "press/authority.pem", "press/press-2.pem"],
+    checks.equal("whole", subprocess.run(["openssl", "verify", "-CAfile", "press/authority.pem", "press/press.pem"],
                                          cwd=folder / "cut_short", capture_output=True).returncode, 0)
+
+
+def what_a_renewal_changes(folder, checks):
+    """The contents of the files whose names maps and services have. The old files are kept beside them."""
+    plant = folder / "renewed"
+    (plant / "authority").mkdir(parents=True)
+    authority = Authority(plant / "authority", "authority")
+    ends = datetime.datetime.now(datetime.timezone.utc) + datetime.timedelta(days=30)
+    dates = "-startdate", "20200101000000Z", "-enddate", f"{ends:%Y%m%d%H%M%SZ}"
+    authority.node("press", names="IP:127.0.0.1", dates=dates)
+    authority.client("cell", "ASN1:UTF8String:operator", dates=dates)
+    old = {}
+    for name in ("press", "cell"):
+        (plant / name).mkdir()
+        for ending in (".pem", ".key"):
+            (plant / "authority" / (name + ending)).rename(plant / name / (name + ending))
+            old[name + ending] = (plant / name / (name + ending)).read_bytes()
+
+    def certificates(hosts="127.0.0.1", **how):
+        return subprocess.run([COUPLER, "certificates", "renewed", "--node", f"press:{hosts}", "--client", "cell:operator"],
+                              cwd=folder, capture_output=True, text=True, **how)
+
+    def files(name):
+        return sorted(file.name for file in (plant / name).iterdir())
+
+    def fits(certificate, key):
+        return subprocess.run(["openssl", "x509", "-in", certificate, "-noout", "-pubkey"], cwd=plant, capture_output=True).stdout \
+            == subprocess.run(["openssl", "pkey", "-in", key, "-pubout"], cwd=plant, capture_output=True).stdout
+
+    died = certificates(preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (400, 400)))
+    checks.equal("a renewal that is killed", died.returncode, -signal.SIGXFSZ)
+    checks.equal("leaves both files as they were", {each: (plant / "press" / each).read_bytes() for each in ("press.pem", "press.key")},
+                 {each: old[each] for each in ("press.pem", "press.key")})
+    told = certificates()
+    checks.equal(f"the next one renews both certificates: {told.stdout}{told.stderr}",
+                 [f"renewed/{name}: {name}.pem and {name}.key are new" in told.stdout for name in ("press", "cell")], [True] * 2)
+    checks.equal("only the node is to be reloaded", told.stdout.count("reload the node"), 1)
+    for name in ("press", "cell"):
+        former = f"{name}-until-{ends:%Y-%m-%d}"
+        checks.equal(f"the files of {name}", files(name),
+                     sorted(("authority.pem", f"{name}.pem", f"{name}.key", f"{former}.pem", f"{former}.key")))
+        checks.equal("the old ones", [(plant / name / (former + ending)).read_bytes() for ending in (".pem", ".key")],
+                     [old[name + ending] for ending in (".pem", ".key")])
+        checks.equal("the new ones belong together", fits(f"{name}/{name}.pem", f"{name}/{name}.key"), True)
+        checks.equal("whoever owns the keys reads them",
+                     [(plant / name / (each + ".key")).stat().st_mode & 0o777 for each in (name, former)], [0o600] * 2)
+    checks.equal("then there is nothing to do", certificates().stdout.count("nothing to do"), 2)
+    for hosts in ("127.0.0.1,press", "127.0.0.1,press,press.local"):  # both end on the day on which the renewed one ends
+        told = certificates(hosts)
+        checks.equal(f"with another name, too: {told.stdout}{told.stderr}",
+                     "stays good until it ends" in told.stdout and "press.pem and press.key are new" in told.stdout, True)
+    checks.equal("no old one has taken another's place", len(set((plant / "press" / each).read_bytes() for each in files("press")
+                                                                 if each.startswith("press-until-"))), 6)
+    (plant / "cell" / "cell.pem").write_text("nothing")
+    checks.equal("what is no certificate is not replaced", "cell/cell.pem cannot be read as a certificate; move it away"
+                 in certificates("127.0.0.1,press,press.local").stderr, True)
 
 
 @contextlib.contextmanager
@@ -205,7 +263,7 @@ def main():
         node = Node(folder, NODE, "cell.yaml")
         try:
             peer.side_by_side((the_tools, node, checks), (which_servers_are_believed, folder, checks),
-                              (what_certificates_makes, folder, checks))
+                              (what_certificates_makes, folder, checks), (what_a_renewal_changes, folder, checks))
         finally:
             node.end()
         if checks.failed:

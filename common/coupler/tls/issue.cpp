@@ -197,12 +197,17 @@ std::optional<Subject> subject_of(const std::string& certificate) {
   return subject;
 }
 
-std::optional<bool> is_to_be_renewed(const std::string& certificate) {
+std::optional<Validity> validity_of(const std::string& certificate) {
   const CertificatePtr parsed = certificate_of(certificate);
   ERR_clear_error();
   if (!parsed) return std::nullopt;
-  const Validity validity = validity_of(parsed.get());
-  return validity.end - std::chrono::system_clock::now() < (validity.end - validity.begin) / 3;
+  return validity_of(parsed.get());
+}
+
+std::optional<bool> is_to_be_renewed(const std::string& certificate) {
+  const auto validity = validity_of(certificate);
+  if (!validity) return std::nullopt;
+  return validity->end - std::chrono::system_clock::now() < (validity->end - validity->begin) / 3;
 }
 
 }  // namespace coupler::tls

@@ -51,6 +51,9 @@ tl::expected<Pem, std::string> request(const Subject& subject, KeyKind kind);
 /// writes them.
 std::optional<Subject> subject_of(const std::string& certificate);
 
+/// Returns from when to when a certificate is good; nullopt if it is no certificate.
+std::optional<Validity> validity_of(const std::string& certificate);
+
 /// Returns whether less than a third of a certificate's life is left; nullopt if it is no certificate.
 std::optional<bool> is_to_be_renewed(const std::string& certificate);
 

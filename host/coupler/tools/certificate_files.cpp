@@ -10,8 +10,13 @@
 #include <cstring>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "coupler/credentials/credentials.hpp"
+#include "coupler/credentials/validity.hpp"
+#include "coupler/tls/issue.hpp"
 
 namespace coupler::tools {
 namespace {
@@ -40,6 +45,20 @@ int write_all(int fd, std::string_view text) {
   return ::fsync(fd) == 0 ? 0 : errno;
 }
 
+/// Writes the file under the name that it has while it is being written. 0, or the errno of what failed.
+int begin(const NewFile& file) {
+  const int fd = ::open(unfinished(file.path).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC,
+                        file.is_secret ? 0600 : 0644);
+  if (fd < 0) return errno;
+  const int error = write_all(fd, file.text);
+  ::close(fd);
+  return error;
+}
+
+tl::unexpected<std::string> cannot_be_written(const fs::path& path, int error) {
+  return tl::unexpected(fmt::format("{} cannot be written: {}", path.string(), std::strerror(error)));
+}
+
 }  // namespace
 
 tl::expected<void, std::string> make_folder(const fs::path& folder, bool is_secret) {
@@ -61,15 +80,52 @@ tl::expected<void, std::string> lock_folder(const fs::path& folder) {
 }
 
 tl::expected<void, std::string> write_new(const fs::path& path, const std::string& text, bool is_secret) {
-  const fs::path beginning = unfinished(path);
-  const int fd = ::open(beginning.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, is_secret ? 0600 : 0644);
-  int error = fd < 0 ? errno : write_all(fd, text);
-  if (fd >= 0) ::close(fd);
-  if (error == 0 && ::access(path.c_str(), F_OK) == 0) error = EEXIST;
-  if (error == 0 && ::rename(beginning.c_str(), path.c_str()) != 0) error = errno;
-  if (error == 0) return {};
-  ::unlink(beginning.c_str());
-  return tl::unexpected(fmt::format("{} cannot be written: {}", path.string(), std::strerror(error)));
+  if (::access(path.c_str(), F_OK) == 0) return cannot_be_written(path, EEXIST);
+  return replace({{path, text, is_secret}});
+}
+
+tl::expected<void, std::string> replace(const std::vector<NewFile>& files) {
+  for (const NewFile& file : files)
+    if (const int error = begin(file); error != 0) {
+      for (const NewFile& each : files) ::unlink(unfinished(each.path).c_str());
+      return cannot_be_written(file.path, error);
+    }
+  for (const NewFile& file : files)
+    if (::rename(unfinished(file.path).c_str(), file.path.c_str()) != 0)
+      return cannot_be_written(file.path, errno);
+  return {};
+}
+
+Stems stems_in(const fs::path& folder, const std::string& name, const char* ending) {
+  Stems stems{std::nullopt, name};
+  const auto is_taken = [&](const char* with) { return fs::exists(folder / (stems.next + with)); };
+  for (int number = 2; is_taken(".pem") || is_taken(".key") || is_taken(".csr"); ++number) {
+    if (is_taken(ending)) stems.newest = stems.next;
+    stems.next = fmt::format("{}-{}", name, number);
+  }
+  return stems;
+}
+
+tl::expected<std::string, std::string> keep_former(const fs::path& folder, const std::string& stem,
+                                                   const std::string& certificate) {
+  const auto life = tls::validity_of(certificate);
+  constexpr std::size_t date_size = 10;  // 2028-11-25
+  const std::string dated =
+      fmt::format("{}-until-{}", stem, minute_text(life.value_or(Validity{}).end).substr(0, date_size));
+  std::string name = dated;
+  for (int number = 2; fs::exists(folder / (name + ".pem")); ++number) {
+    if (read_pem_file("certificate", name + ".pem", folder.string()) == certificate) return name;
+    name = fmt::format("{}-{}", dated, number);
+  }
+  std::vector<NewFile> copies;
+  if (fs::exists(folder / (stem + ".key"))) {
+    auto key = read_pem_file("key", stem + ".key", folder.string(), true);
+    if (!key) return key;
+    copies.push_back({folder / (name + ".key"), *std::move(key), true});
+  }
+  copies.push_back({folder / (name + ".pem"), certificate, false});
+  if (auto done = replace(copies); !done) return tl::unexpected(std::move(done).error());
+  return name;
 }
 
 }  // namespace coupler::tools

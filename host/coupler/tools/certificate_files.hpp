@@ -4,7 +4,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <tl/expected.hpp>
 
@@ -22,5 +24,27 @@ tl::expected<void, std::string> lock_folder(const std::filesystem::path& folder)
 /// file.
 tl::expected<void, std::string> write_new(const std::filesystem::path& path, const std::string& text,
                                           bool is_secret);
+
+struct NewFile {
+  std::filesystem::path path;
+  std::string text;
+  bool is_secret;  ///< only its owner can read it
+};
+/// Writes files to a folder of make_folder(), in this order, in place of those that have their names. Returns
+/// an error if one of them cannot be written; all are as they were then.
+tl::expected<void, std::string> replace(const std::vector<NewFile>& files);
+
+/// NAME, NAME-2, NAME-3 …: each request (--csr) has a number, as renewed certificates once had. The newest
+/// that has a file with this ending, and the first one that has no file.
+struct Stems {
+  std::optional<std::string> newest;
+  std::string next;
+};
+Stems stems_in(const std::filesystem::path& folder, const std::string& name, const char* ending);
+
+/// Copies STEM.pem, whose text is `certificate`, and STEM.key to names with the date of the certificate's
+/// end, unless a call that was killed has done so. Returns what these names begin with.
+tl::expected<std::string, std::string> keep_former(const std::filesystem::path& folder,
+                                                   const std::string& stem, const std::string& certificate);
 
 }  // namespace coupler::tools

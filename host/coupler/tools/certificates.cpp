@@ -6,7 +6,6 @@
 #include <array>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,6 +20,7 @@
 #include "coupler/map/network.hpp"
 #include "coupler/map/security.hpp"
 #include "coupler/tls/issue.hpp"
+#include "coupler/tools/certificate_authority.hpp"
 #include "coupler/tools/certificate_files.hpp"
 #include "coupler/tools/commands.hpp"
 
@@ -97,84 +97,6 @@ tl::expected<tls::Subject, std::string> client_of(const std::string& text) {
   return tls::Subject{name, false, {}, role};
 }
 
-/// Checks that the certificate in a subject's folder is from DIR/authority, which may have been put away.
-/// `authority` is its certificate; empty if it is not there.
-tl::expected<void, std::string> expect_authority(const fs::path& own, const std::string& authority) {
-  if (!fs::exists(own / "authority.pem")) return {};
-  const auto text = read_pem_file("authority's certificate", "authority.pem", own.string());
-  if (!text) return tl::unexpected(text.error());
-  if (!authority.empty() && text->find(authority) != std::string::npos) return {};
-  const std::string other = (own.parent_path() / "authority").string();
-  return tl::unexpected(
-      authority.empty()
-          ? fmt::format("{} is of an authority that is not here; bring back {}, or begin another folder",
-                        own.string(), other)
-          : fmt::format("{} is of another authority than {}; begin another folder", own.string(), other));
-}
-
-/// Both files or none.
-tl::expected<void, std::string> place_authority(const fs::path& own, const tls::Pem& made) {
-  const fs::path unfinished = own.parent_path() / ".authority";  // no subject has such a name
-  std::error_code error;
-  fs::remove_all(unfinished, error);
-  if (auto done = make_folder(unfinished, true); !done) return done;
-  if (auto done = write_new(unfinished / "authority.key", made.key, true); !done) return done;
-  if (auto done = write_new(unfinished / "authority.pem", made.certificate, false); !done) return done;
-  fs::rename(unfinished, own, error);
-  if (error)
-    return tl::unexpected(
-        fmt::format("{} cannot be made: {}; if there is a folder without authority.pem, move it away",
-                    own.string(), error.message()));
-  return {};
-}
-
-/// Returns the authority in DIR/authority, and makes it if it is not there. Returns an error if one of the
-/// subjects has a certificate of another authority.
-tl::expected<tls::Pem, std::string> authority_in(const fs::path& folder, tls::KeyKind kind,
-                                                 const std::vector<tls::Subject>& subjects) {
-  const fs::path own = folder / "authority";
-  const bool is_there = fs::exists(own / "authority.pem");
-  std::string text;
-  if (is_there) {
-    auto certificate = read_pem_file("authority's certificate", "authority.pem", own.string());
-    if (!certificate) return tl::unexpected(std::move(certificate).error());
-    text = *std::move(certificate);
-  }
-  for (const tls::Subject& subject : subjects)
-    if (auto done = expect_authority(folder / subject.name, text); !done)
-      return tl::unexpected(std::move(done).error());
-  if (is_there) {
-    auto key = read_pem_file("authority's key", "authority.key", own.string(), true);
-    if (!key) return tl::unexpected(std::move(key).error());
-    return tls::Pem{std::move(text), *std::move(key)};
-  }
-  fs::path place = fs::absolute(folder).lexically_normal();
-  if (place.filename().empty()) place = place.parent_path();  // it was written with a slash at its end
-  constexpr std::size_t longest = 48;                         // with the words before it 64 bytes at most
-  auto made = tls::make_authority("Authority of " + place.filename().string().substr(0, longest), kind);
-  if (!made) return made;
-  if (auto done = place_authority(own, *made); !done) return tl::unexpected(std::move(done).error());
-  fmt::print("{}: made; it stays here: whoever has authority.key can make clients of any role\n",
-             own.string());
-  return made;
-}
-
-/// NAME, NAME-2, NAME-3 …: the newest that has a file with this ending, and the first one that has no file.
-struct Stems {
-  std::optional<std::string> newest;
-  std::string next;
-};
-
-Stems stems_in(const fs::path& folder, const std::string& name, const char* ending) {
-  Stems stems{std::nullopt, name};
-  const auto is_taken = [&](const char* with) { return fs::exists(folder / (stems.next + with)); };
-  for (int number = 2; is_taken(".pem") || is_taken(".key") || is_taken(".csr"); ++number) {
-    if (is_taken(ending)) stems.newest = stems.next;
-    stems.next = fmt::format("{}-{}", name, number);
-  }
-  return stems;
-}
-
 /// Returns the lines for the map beside which the subject's folder will be, with paths from that map. For a
 /// node, they let each role read everything and write nothing, which is a safe start.
 std::string lines_for_map(const tls::Subject& subject, const std::string& stem,
@@ -207,49 +129,67 @@ std::string what_it_is(const tls::Subject& subject) {
                               : fmt::format("a client with the role {}", subject.role);
 }
 
-/// Returns whether the newest certificate of the folder is the subject's and good for long, and reports that
-/// or what is done about it. It is an error if the folder belongs to another subject.
+/// Returns whether a certificate of the folder is the subject's and good for long, and reports that or what
+/// is done about it. It is an error if the folder belongs to another subject.
 tl::expected<bool, std::string> is_kept(const fs::path& own, const std::string& stem,
-                                        const tls::Subject& subject) {
-  const auto text = read_pem_file("certificate", stem + ".pem", own.string());
-  if (!text) return tl::unexpected(text.error());
-  const auto before = tls::subject_of(*text);
-  if (!before) return false;
+                                        const std::string& certificate, const tls::Subject& subject) {
+  const auto before = tls::subject_of(certificate);
+  if (!before)
+    return tl::unexpected(
+        fmt::format("{} cannot be read as a certificate; move it away", (own / (stem + ".pem")).string()));
   if (before->is_node != subject.is_node)
     return tl::unexpected(fmt::format("{} is a {} already; give the {} another name", own.string(),
                                       before->is_node ? "node" : "client",
                                       subject.is_node ? "node" : "client"));
-  if (*before == subject && tls::is_to_be_renewed(*text) == false) {
-    fmt::print("{}: {}.pem is good for more than a third of its life; nothing to do\n", own.string(), stem);
-    return true;
+  if (!(*before == subject)) {
+    fmt::print(
+        "{}: the certificate of {} stays good until it ends; revoke it if nobody is to use it any more\n",
+        own.string(), what_it_is(*before));
+    return false;
   }
-  if (!(*before == subject))
-    fmt::print("{}: {}.pem, {}, stays good until it ends; revoke it if nobody is to use it any more\n",
-               own.string(), stem, what_it_is(*before));
-  return false;
+  if (tls::is_to_be_renewed(certificate) == true) return false;
+  fmt::print("{}: {}.pem is good for more than a third of its life; nothing to do\n", own.string(), stem);
+  return true;
 }
 
-/// Makes a certificate and its key, unless the subject has one with more than a third of its life left.
+/// Makes a certificate and its key, unless the subject has one with more than a third of its life left. They
+/// get the names that a map or a service knows already.
 tl::expected<void, std::string> provide(const fs::path& folder, const tls::Subject& subject,
                                         tls::KeyKind kind, const tls::Pem& authority,
                                         const std::vector<std::string>& roles) {
   const fs::path own = folder / subject.name;
   if (auto done = make_folder(own, true); !done) return done;
   const Stems stems = stems_in(own, subject.name + (kind == tls::KeyKind::rsa ? "-rsa" : ""), ".pem");
+  const std::string stem = stems.newest.value_or(stems.next);
+  std::string former;
   if (stems.newest) {
-    const auto kept = is_kept(own, *stems.newest, subject);
+    const auto certificate = read_pem_file("certificate", stem + ".pem", own.string());
+    if (!certificate) return tl::unexpected(certificate.error());
+    const auto kept = is_kept(own, stem, *certificate, subject);
     if (!kept) return tl::unexpected(kept.error());
     if (*kept) return {};
+    auto copied = keep_former(own, stem, *certificate);
+    if (!copied) return tl::unexpected(std::move(copied).error());
+    former = *std::move(copied);
   }
   const auto made = tls::issue(subject, kind, authority);
   if (!made) return tl::unexpected(made.error());
   if (!fs::exists(own / "authority.pem"))  // first: who has a certificate has this
     if (auto done = write_new(own / "authority.pem", authority.certificate, false); !done) return done;
-  if (auto done = write_new(own / (stems.next + ".key"), made->key, true); !done) return done;
-  if (auto done = write_new(own / (stems.next + ".pem"), made->certificate, false); !done) return done;
-  fmt::print("{}: {}, {}; copy the folder beside its map, and write into that:\n", own.string(),
-             stems.newest ? "made anew" : "made", what_it_is(subject));
-  fmt::print("{}", lines_for_map(subject, stems.next, roles));
+  // The key first: a call that is killed between the two leaves a certificate that the next one renews.
+  if (auto done = replace(
+          {{own / (stem + ".key"), made->key, true}, {own / (stem + ".pem"), made->certificate, false}});
+      !done)
+    return done;
+  if (former.empty()) {
+    fmt::print("{}: made, {}; copy the folder beside its map, and write into that:\n{}", own.string(),
+               what_it_is(subject), lines_for_map(subject, stem, roles));
+  } else {
+    fmt::print(
+        "{0}: {1}.pem and {1}.key are new, {2}; copy both to where the old ones are in use{3}. The old "
+        "certificate is kept as {4}.pem\n",
+        own.string(), stem, what_it_is(subject), subject.is_node ? ", and reload the node" : "", former);
+  }
   return {};
 }
 
@@ -323,7 +263,8 @@ void add_certificates(Program& program, Exit& exit) {
   command.footer(
       "Example:\n  coupler certificates cell --node press:192.168.1.10 --client cell1:operator\nCalled "
       "again, it "
-      "makes what is missing, and renews what has less than a third of its life left.");
+      "makes what is missing, and renews what has less than a third of its life left, in files of the same "
+      "names.");
   command.callback([arguments, &exit] { exit = certificates(*arguments); });
 }
 

@@ -32,6 +32,14 @@ TEST(Issue, A_request_is_one) {
   EXPECT_THAT(asked->certificate, StartsWith("-----BEGIN CERTIFICATE REQUEST-----"));
 }
 
+TEST(Issue, A_certificate_says_until_when_it_is_good) {
+  const auto life = validity_of(issue(test_node(), KeyKind::p256, test_authority())->certificate);
+  ASSERT_TRUE(life);
+  EXPECT_GE(life->end - life->begin, certificate_life);
+  EXPECT_LE(life->end - life->begin, certificate_life + std::chrono::hours(2));
+  EXPECT_EQ(validity_of("nothing"), std::nullopt);
+}
+
 TEST(Issue, A_new_certificate_need_not_be_renewed) {
   EXPECT_EQ(is_to_be_renewed(issue(test_node(), KeyKind::p256, test_authority())->certificate), false);
   EXPECT_EQ(is_to_be_renewed("nothing"), std::nullopt);
