@@ -58,6 +58,7 @@ def the_tools(node, checks):
     told = coupler("dump", "cell.yaml", "--at", place, "--ca", "ca.pem", "--tls-name", "press")
     checks.equal("and so is a wrong name", "another name or address (it has " in told.stderr, True)
     checks.equal("with one remedy", told.stderr.count("check that"), 0)
+    node.await_line("127.0.0.1 did not connect: the other side refuses with the TLS alert bad_certificate: it connects as 'press'")
     pins = [subprocess.run([COUPLER, "pin", where], cwd=node.folder, capture_output=True, text=True).stdout
             for where in (place, "node.pem", "ca.pem")]
     checks.equal("a pin is the same from the node and from the file", (pins[0], pins[0] != pins[2]), (pins[1], True))

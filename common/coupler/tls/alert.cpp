@@ -2,13 +2,18 @@
 #include "coupler/tls/alert.hpp"
 
 #include <openssl/err.h>
+#include <openssl/x509v3.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "coupler/codec/text.hpp"
+#include "coupler/tls/certificate_names.hpp"
 #include "coupler/tls/openssl.hpp"
 
 namespace coupler::tls {
@@ -20,16 +25,19 @@ struct Alert {
   std::string_view meaning;
 };
 
+constexpr int bad_certificate = 42;
+constexpr int certificate_unknown = 46;
+
 /// RFC 8446, 6.2.
 constexpr Alert alerts[] = {
     {40, "handshake_failure", "no version or cipher in common, or a rule of its own"},
-    {42, "bad_certificate",
+    {bad_certificate, "bad_certificate",
      "it does not accept this certificate, and its log says why: one that is not valid yet, a malformed "
-     "role, another pin"},
+     "role, a weak key"},
     {43, "unsupported_certificate", "this certificate is for another purpose"},
     {44, "certificate_revoked", "this certificate is revoked"},
     {45, "certificate_expired", "this certificate has expired, or its clock is wrong"},
-    {46, "certificate_unknown", "it does not accept this certificate"},
+    {certificate_unknown, "certificate_unknown", "it does not accept this certificate"},
     {48, "unknown_ca", "this certificate is from an authority that it does not trust"},
     {49, "access_denied", "this certificate may not connect"},
     {51, "decrypt_error", "a signature is wrong"},
@@ -40,11 +48,36 @@ constexpr Alert alerts[] = {
     {116, "certificate_required", "it wants a certificate"},
 };
 
-std::string alert_text(int number) {
-  for (const Alert& alert : alerts)
-    if (alert.number == number)
-      return fmt::format("the other side refuses with the TLS alert {}: {}", alert.name, alert.meaning);
-  return fmt::format("the other side refuses with the TLS alert {}", number);
+/// Returns what a client may have against the certificate of this server where its alert does not say that.
+/// One that connects by a name tells it, and one that connects by an address does not.
+std::string objection_to_server(const SSL* ssl) {
+  X509* const own = SSL_get_certificate(ssl);
+  const char* const name = SSL_get_servername(ssl, TLSEXT_NAMETYPE_host_name);
+  const bool is_known = name != nullptr && codec::is_plain_text(name);
+  if (is_known && X509_check_host(own, name, 0, name_flags, nullptr) == 1)
+    return "it does not accept this certificate, and its log says why: one that is not valid yet, another "
+           "pin";
+  constexpr const char* remedy =
+      "let it connect by one that the certificate has, or give it that as 'name' (an option: --tls-name), or "
+      "make "
+      "a certificate that has the other one, too ('coupler certificates --node')";
+  if (is_known)
+    return fmt::format("it connects as '{}', and this certificate is for another name or address{}; {}", name,
+                       names_text(own), remedy);
+  return fmt::format(
+      "it does not accept this certificate, and its log says why: perhaps it connects by a name or "
+      "address that the certificate does not have{}; {}",
+      names_text(own), remedy);
+}
+
+std::string alert_text(const SSL* ssl, int number) {
+  const Alert* const known = std::find_if(std::begin(alerts), std::end(alerts),
+                                          [=](const Alert& each) { return each.number == number; });
+  if (known == std::end(alerts)) return fmt::format("{}{}", refuses, number);
+  const bool may_be_name = number == bad_certificate || number == certificate_unknown;
+  return fmt::format(
+      "{}{}: {}", refuses, known->name,
+      SSL_is_server(ssl) != 0 && may_be_name ? objection_to_server(ssl) : std::string(known->meaning));
 }
 
 /// Returns the first error of TLS itself among those that OpenSSL has noted. How many follow it differs
@@ -72,7 +105,7 @@ std::string failure_text(const SSL* ssl, int result, const Verification& verific
                ? has_left
                : std::strerror(system_error);
   if (ERR_GET_LIB(code) != ERR_LIB_SSL) return text;
-  if (reason >= SSL_AD_REASON_OFFSET) return alert_text(reason - SSL_AD_REASON_OFFSET);
+  if (reason >= SSL_AD_REASON_OFFSET) return alert_text(ssl, reason - SSL_AD_REASON_OFFSET);
   switch (reason) {
     case SSL_R_UNEXPECTED_EOF_WHILE_READING: return has_left;
     case SSL_R_WRONG_VERSION_NUMBER:

@@ -13,6 +13,8 @@ namespace coupler::tls {
 constexpr const char* no_tls = "the other side does not speak TLS";
 /// The same of one that left, with or without a word: no frame of Modbus can be cut short unnoticed.
 constexpr const char* has_left = "the other side has ended the connection";
+/// How it begins where the other side has refused this one.
+constexpr const char* refuses = "the other side refuses with the TLS alert ";
 
 /// Why a TLS connection has failed, and what to do: this side's own judgement, the alert of the other side by
 /// its name in RFC 8446, or what OpenSSL says. `result` is what its last call returned. Forgets OpenSSL's

@@ -2,6 +2,8 @@
 // The names that a certificate has. Those that cannot be shown, as one with a line break, are left out.
 #pragma once
 
+#include <openssl/x509v3.h>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +11,10 @@
 #include "coupler/tls/openssl.hpp"
 
 namespace coupler::tls {
+
+/// How a name is compared with those of a certificate, for X509_check_host(3).
+constexpr unsigned int name_flags =
+    X509_CHECK_FLAG_NO_PARTIAL_WILDCARDS | X509_CHECK_FLAG_NEVER_CHECK_SUBJECT;
 
 /// Returns the common name of its subject; "?" if it has none.
 std::string common_name(const X509* certificate);

@@ -167,8 +167,7 @@ void verify_with(SSL* ssl, Verification& verification) {
   SSL_set_app_data(ssl, &verification);
   if (verification.server.empty() || verification.pin) return;
   X509_VERIFY_PARAM* param = SSL_get0_param(ssl);
-  X509_VERIFY_PARAM_set_hostflags(param,
-                                  X509_CHECK_FLAG_NO_PARTIAL_WILDCARDS | X509_CHECK_FLAG_NEVER_CHECK_SUBJECT);
+  X509_VERIFY_PARAM_set_hostflags(param, name_flags);
   if (X509_VERIFY_PARAM_set1_ip_asc(param, verification.server.c_str()) == 1) return;
   X509_VERIFY_PARAM_set1_host(param, verification.server.c_str(), 0);
   SSL_set_tlsext_host_name(ssl, verification.server.c_str());

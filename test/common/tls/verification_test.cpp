@@ -87,6 +87,37 @@ TEST(Verification, A_server_has_the_name_or_address_by_which_it_was_reached) {
         << bad;
 }
 
+TEST(Verification, A_server_is_told_that_it_has_another_name) {
+  const Credentials node = credentials_of(test_node());
+  const Credentials client = credentials_of(test_client());
+  const auto of_server = [&](const char* name) {
+    return problems_of(node, client, TlsPair::for_server(name)).first;
+  };
+  EXPECT_THAT(
+      of_server("press.plant"),
+      AllOf(HasSubstr("bad_certificate: it connects as 'press.plant', and this certificate is for another "
+                      "name or address (it has press, 10.0.0.7)"),
+            HasSubstr("--tls-name")));
+  const auto names_are_one_reason =
+      AllOf(HasSubstr("perhaps it connects by a name or address that the certificate does not have (it has "
+                      "press, 10.0.0.7)"),
+            HasSubstr("--tls-name"));
+  EXPECT_THAT(of_server("10.0.0.8"), names_are_one_reason) << "an address is not told";
+  EXPECT_THAT(of_server("press\nplant"), names_are_one_reason) << "that cannot be shown";
+}
+
+TEST(Verification, A_server_whose_name_is_right_is_not_told_of_names) {
+  // A client that cannot find the name wrong, as one that believes another certificate.
+  Verification hard_to_please;
+  hard_to_please.pin = Pin{};
+  TlsPair pair(credentials_of(test_node()), credentials_of(test_client()), TlsPair::for_clients(),
+               hard_to_please);
+  SSL_set_tlsext_host_name(pair.client.ssl(), "press");
+  pair.shake_hands();
+  EXPECT_THAT(pair.server.problem(), AllOf(HasSubstr("bad_certificate"), HasSubstr("another pin"),
+                                           testing::Not(HasSubstr("name or address"))));
+}
+
 TEST(Verification, One_side_does_not_pass_for_the_other) {
   EXPECT_THAT(problems_of(credentials_of(test_node()), credentials_of(test_node())).first,
               HasSubstr("another purpose"));

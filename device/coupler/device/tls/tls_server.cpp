@@ -172,7 +172,8 @@ void TlsServer::failed(const TlsConnection& connection, const std::string& probl
   // Each reason is a kind of its own: their beginnings are our own texts, and few.
   log_.warn_limited(
       "refused: " + problem.substr(0, 24),
-      fmt::format("{} was refused: {}{}", host_of(connection.address()), problem,
+      fmt::format("{} {}: {}{}", host_of(connection.address()),
+                  problem.rfind(tls::refuses, 0) == 0 ? "did not connect" : "was refused", problem,
                   problem == tls::no_tls ? "; clients without TLS have the node's other port" : ""));
 }
 
