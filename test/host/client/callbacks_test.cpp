@@ -134,5 +134,51 @@ TEST_F(PumpClient, A_change_may_be_answered_by_setting_a_point) {
   ASSERT_TRUE(becomes([&] { return asked && server.tables().tab_registers[0] == 125; }));
 }
 
+TEST_F(PumpClient, It_is_told_when_the_device_comes_and_goes) {
+  std::mutex mutex;
+  std::vector<bool> told;
+  std::vector<bool> was_online;
+  pump.on_online([&](bool online) {
+    const std::lock_guard lock(mutex);
+    told.push_back(online);
+    was_online.push_back(pump.online());
+    if (online) pump.speed.set(12.5);
+  });
+  const auto seen = [&](std::size_t count) {
+    return becomes([&] {
+      const std::lock_guard lock(mutex);
+      return told.size() >= count;
+    });
+  };
+  pump.connect();
+  ASSERT_TRUE(seen(1));
+  EXPECT_TRUE(becomes([&] { return server.tables().tab_registers[0] == 125; }));
+  pump.disconnect();
+  EXPECT_THAT(told, ElementsAre(true, false)) << "before disconnect() has returned";
+  pump.connect();
+  ASSERT_TRUE(seen(3));
+  pump.on_online({});
+  pump.disconnect();
+  EXPECT_THAT(told, ElementsAre(true, false, true));
+  EXPECT_EQ(was_online, told);
+}
+
+TEST_F(PumpClient, What_it_throws_when_told_so_is_reported_and_the_connection_goes_on) {
+  std::mutex mutex;
+  std::vector<std::string> reports;
+  Options listening = options();
+  listening.on_report = [&](Level, const std::string& text) {
+    const std::lock_guard lock(mutex);
+    reports.push_back(text);
+  };
+  maps::pump::Client other(listening);
+  other.on_online([](bool) { throw std::runtime_error("no recipe"); });
+  other.connect();
+  EXPECT_TRUE(other.running.wait(soon));
+  other.disconnect();
+  EXPECT_THAT(reports, ::testing::Contains(
+                           ::testing::HasSubstr("on_online: its callback threw an exception: no recipe")));
+}
+
 }  // namespace
 }  // namespace coupler::client

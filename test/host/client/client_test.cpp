@@ -67,6 +67,18 @@ TEST_F(PumpClient, Before_connect_nothing_is_read_or_written) {
   EXPECT_EQ(value.error().quality, Quality::offline);
 }
 
+TEST(NoValue, Says_why_there_is_none) {
+  EXPECT_EQ(to_string(NoValue{Quality::never_read}), "was not read yet");
+  EXPECT_EQ(to_string(NoValue{Quality::offline}), "was not read yet: the device does not answer");
+  EXPECT_EQ(to_string(NoValue{Quality::rejected, modbus::Exception::illegal_data_address}),
+            "cannot be read: exception 02 (illegal data address)");
+  NoValue unusable{Quality::invalid};
+  unusable.why_unusable = "the device gives 0x8000, which the map calls invalid";
+  EXPECT_EQ(to_string(unusable), "has no value: the device gives 0x8000, which the map calls invalid");
+  unusable.quality = Quality::offline;
+  EXPECT_EQ(to_string(unusable), "has no value: the device does not answer");
+}
+
 TEST_F(PumpClient, Disconnected_it_keeps_its_last_values_as_offline_and_can_connect_again) {
   server.tables().tab_input_bits[0] = 1;
   pump.connect();

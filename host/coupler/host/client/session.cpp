@@ -106,13 +106,25 @@ std::future<host::ScheduleAnswer> known(host::ScheduleAnswer answer) {
 
 }  // namespace
 
-struct Session::Engine {
-  Engine(const Map& map, Verify verify, host::ValueTable& values, host::Sink& sink)
-      : link(host::make_link(map.connection, map.limits)),
-        thread(map, verify, load_served_map, link, values, sink) {
+/// A connection, whose thread calls the functions of Sink.
+struct Session::Engine final : host::Sink {
+  Engine(Session& of, Verify verify)
+      : session(of),
+        link(host::make_link(of.map_.connection, of.map_.limits)),
+        thread(of.map_, verify, load_served_map, link, of.values_, *this) {
     thread.start();
   }
 
+  void on_values(Span<const std::uint32_t> points) override {
+    const host::ValueTable& values = session.values_;
+    for (const std::uint32_t point : points)
+      if (values.differs(point)) session.listeners_.call(point, values.registers(point), values.stamp(point));
+  }
+  void on_online(bool online) override { session.come_or_go(online); }
+  void on_report(Level level, const std::string& text) override { report(session.options_, level, text); }
+  void on_scheduled(const host::ScheduledOutcome& outcome) override { session.scheduled_.tell(outcome); }
+
+  Session& session;
   host::Link link;
   host::DeviceThread thread;
 };
@@ -139,7 +151,7 @@ Session::Session(const Map& map, Options options)
     : options_(with_absolute_paths(std::move(options))),
       map_(moved(map, options_)),
       values_(map_),
-      listeners_(map_.points.size()) {}
+      listeners_(map_.points.size() + 1) {}
 
 Session::~Session() { disconnect(); }
 
@@ -148,8 +160,7 @@ void Session::connect() {
   const std::unique_lock lock(engine_mutex_);
   if (engine_) return;
   values_.begin();
-  host::Sink& news = *this;
-  engine_ = std::make_unique<Engine>(map_, options_.verify.value_or(map_.verify), values_, news);
+  engine_ = std::make_unique<Engine>(*this, options_.verify.value_or(map_.verify));
 }
 
 void Session::disconnect() {
@@ -204,18 +215,21 @@ PendingSchedule Session::schedule(const host::ScheduledWrite& what) {
   });
 }
 
-void Session::on_values(Span<const std::uint32_t> points) {
-  for (const std::uint32_t point : points)
-    if (values_.differs(point)) listeners_.call(point, values_.registers(point), values_.stamp(point));
+void Session::come_or_go(bool online) {
+  {
+    const std::lock_guard lock(online_mutex_);
+    online_ = online;
+    came_online_.notify_all();
+  }
+  const std::uint16_t told = online ? 1 : 0;
+  listeners_.call(connection(), &told, {std::chrono::steady_clock::now(), {}});
 }
 
-void Session::on_online(bool online) {
-  const std::lock_guard lock(online_mutex_);
-  online_ = online;
-  came_online_.notify_all();
+void Session::on_online(std::function<void(bool)> use) {
+  if (!use) return listen(connection(), {});
+  listen(connection(),
+         [use = std::move(use)](const std::uint16_t* online, host::Stamp) { use(*online != 0); });
 }
-
-void Session::on_report(Level level, const std::string& text) { report(options_, level, text); }
 
 void Session::listen(std::uint32_t point, ValueListeners::Listener listener) {
   if (!listener) return listeners_.set(point, {});
@@ -223,7 +237,7 @@ void Session::listen(std::uint32_t point, ValueListeners::Listener listener) {
     if (std::exchange(told, true)) return;
     const std::string text =
         fmt::format("{}: its callback threw an exception: {}; catch it there (reported once)",
-                    map_.points[point].name, what);
+                    point == connection() ? "on_online" : map_.points[point].name, what);
     report(options_, Level::error, text);
     if (!options_.on_report) print(text);
   };

@@ -74,9 +74,9 @@ PendingWrite refused(std::string_view why);
 /// All may be called from any thread. Callbacks come in the connection's thread: they may read and set
 /// points, but must neither wait nor connect nor disconnect. What they throw is reported, once
 /// for each of them: to Options::on_report, or on stderr if there is none.
-class Session : private host::Sink {
+class Session {
  public:
-  ~Session() override;
+  virtual ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
@@ -91,10 +91,13 @@ class Session : private host::Sink {
   bool online() const;
   /// Waits for online(); false if it is not within `at_most`.
   bool wait_online(std::chrono::milliseconds at_most) const;
+  /// Calls `use(online())` each time that it changes; set it before connect() to miss none. The rest is as
+  /// said of Input::on_change().
+  void on_online(std::function<void(bool)> use);
 
  protected:
   /// The storage of `map` must outlive it. The destructor of a derived class must call disconnect(): until
-  /// then the connection's thread calls virtual functions and callbacks.
+  /// then callbacks may use its points.
   Session(const Map& map, Options options);
 
  private:
@@ -108,18 +111,16 @@ class Session : private host::Sink {
   void listen(std::uint32_t point, ValueListeners::Listener listener);
   PendingWrite write(host::Write& write);
   PendingSchedule schedule(const host::ScheduledWrite& what);
-
-  void on_values(Span<const std::uint32_t> points) override;
-  void on_online(bool online) override;
-  void on_report(Level level, const std::string& text) override;
-  void on_scheduled(const host::ScheduledOutcome& outcome) override { scheduled_.tell(outcome); }
+  void come_or_go(bool online);
+  /// The place of on_online() among the listeners.
+  std::uint32_t connection() const { return static_cast<std::uint32_t>(map_.points.size()); }
 
   struct Engine;
 
   const Options options_;
   const Map map_;
   host::ValueTable values_;
-  ValueListeners listeners_;
+  ValueListeners listeners_;  ///< of the points, and behind them that of on_online()
   ScheduleResults scheduled_;
   mutable std::mutex online_mutex_;
   mutable std::condition_variable came_online_;
