@@ -20,9 +20,9 @@ namespace {
 using codec::Type;
 
 // Other members of a client, and the macros that programs use most.
-constexpr std::string_view taken[] = {"Client",     "EOF",        "NULL",       "Session",   "connect",
-                                      "disconnect", "each_point", "map",        "on_online", "online",
-                                      "options",    "use",        "wait_online"};
+constexpr std::string_view taken[] = {"Client",     "EOF",        "NULL",        "Session",   "connect",
+                                      "disconnect", "each_point", "map",         "on_online", "online",
+                                      "options",    "use",        "wait_online", "write_all"};
 
 /// An identifier for each name; none is one of `taken` or of small_macros().
 std::vector<std::string> cpp_names(const std::vector<std::string_view>& names) {

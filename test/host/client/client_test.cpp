@@ -10,6 +10,7 @@ namespace coupler::client {
 namespace {
 
 using namespace std::chrono_literals;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using Outcome = SetResult::Outcome;
@@ -54,6 +55,39 @@ TEST_F(PumpClient, A_value_that_is_none_of_its_point_is_refused_and_the_range_na
   const SetResult longer = pump.label.set("seventeen letters").get();
   EXPECT_EQ(longer.outcome, Outcome::refused);
   EXPECT_THAT(longer.text, HasSubstr("at most 16 bytes"));
+}
+
+TEST_F(PumpClient, Values_that_are_written_together_are_one_request_where_they_are_neighbours) {
+  std::vector<int> written;
+  server.on_write = [&](int address) { written.push_back(address); };
+  pump.connect();
+  ASSERT_TRUE(pump.wait_online(soon));
+  const SetResult result =
+      pump.write_all({pump.label.to("north"), pump.valve.to(true), pump.speed.to(80)}).get();
+  EXPECT_TRUE(result);
+  EXPECT_EQ(result.text, "ok");
+  EXPECT_THAT(written, ElementsAre(0, 0)) << "the coil, and all registers from 0 on";
+  EXPECT_EQ(server.tables().tab_bits[0], 1);
+  EXPECT_EQ(server.tables().tab_registers[0], 800);
+  EXPECT_EQ(server.tables().tab_registers[1], 0x6E6F);
+}
+
+TEST_F(PumpClient, If_one_of_them_is_not_valid_none_is_written_and_its_point_is_named) {
+  maps::pump::Client other(options());
+  pump.connect();
+  ASSERT_TRUE(pump.wait_online(soon));
+  const SetResult beyond = pump.write_all({pump.valve.to(true), pump.speed.to(7000)}).get();
+  EXPECT_EQ(beyond.outcome, Outcome::refused);
+  EXPECT_THAT(beyond.text, AllOf(HasSubstr("speed: refused: "), HasSubstr("0 to 6553.5 %")));
+  const SetResult anothers = pump.write_all({pump.valve.to(true), other.run.to(true)}).get();
+  EXPECT_EQ(anothers.outcome, Outcome::refused);
+  EXPECT_THAT(anothers.text, HasSubstr("run: refused: it is a point of another client"));
+  EXPECT_EQ(pump.write_all({}).get().outcome, Outcome::refused);
+  EXPECT_TRUE(pump.run.set(true).get()) << "what was written before is there now";
+  EXPECT_EQ(server.tables().tab_bits[0], 0);
+  const SetResult early = other.write_all({other.valve.to(true), other.run.to(true)}).get();
+  EXPECT_EQ(early.outcome, Outcome::dropped);
+  EXPECT_THAT(early.text, HasSubstr("valve: dropped: not connected"));
 }
 
 TEST_F(PumpClient, Before_connect_nothing_is_read_or_written) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <array>
 #include <utility>
 
 #include "test/host/core/device_fixture.hpp"
@@ -95,6 +96,34 @@ TEST_F(DeviceWriteTest, A_refused_write_is_reported_and_keeps_the_connection) {
   run_for(milliseconds(200));
   EXPECT_EQ(sink->reported("write to a: exception 04 (server device failure)"), 1);
   EXPECT_EQ(device.count("connect"), 0U);
+}
+
+TEST_F(DeviceWriteTest, Writes_that_are_pushed_together_are_one_request) {
+  start_online(MapBuilder().holding("a", 5).holding("b", 6));
+  std::array<Write, 2> both;
+  both[1].point = 1;
+  for (Write& write : both) write.ordered = true;
+  engine->push_together(both);
+  EXPECT_TRUE(engine->send_now());
+  engine->step();
+  EXPECT_THAT(device.requests, ElementsAre("write registers 5+2"));
+}
+
+TEST_F(DeviceWriteTest, If_one_of_them_is_refused_the_other_is_not_sent_either) {
+  start_online(MapBuilder().holding("a", 5).add(Table::holding_registers, "b", 6, codec::Type::REAL));
+  std::array<Write, 2> both;
+  both[1].point = 1;
+  both[1].registers = {0x7FC0, 0x7FC0};  // NaN in each order
+  std::array<WriteTicket, 2> tickets;
+  for (std::size_t i = 0; i < both.size(); ++i) {
+    both[i].ordered = true;
+    both[i].listener = &tickets[i];
+  }
+  engine->push_together(both);
+  EXPECT_EQ(tickets[1].wait().outcome, WriteResult::Outcome::refused);
+  EXPECT_EQ(tickets[0].wait().text, "dropped: the value of b, which is written together with it, is refused");
+  run_for(milliseconds(50));
+  EXPECT_EQ(device.count("write register 5"), 0U);
 }
 
 TEST_F(DeviceWriteTest, A_write_without_an_answer_is_reported_as_lost_and_not_repeated) {

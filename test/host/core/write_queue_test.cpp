@@ -177,6 +177,26 @@ TEST_F(WriteQueueTest, Neighbours_in_the_queue_and_in_the_device_are_taken_toget
   EXPECT_THAT(take(), ElementsAre(1));
 }
 
+TEST_F(WriteQueueTest, Writes_that_are_pushed_together_stay_together) {
+  push(number, 1);
+  push(3, 1);
+  const std::vector<Write> writes{service_of(number, 2), service_of(number + 1, 2),
+                                  service_of(number + 2, 2)};
+  EXPECT_TRUE(queue.push_together(writes));
+  push(number + 3, 3);
+  EXPECT_THAT(take(), ElementsAre(number));
+  EXPECT_THAT(take(), ElementsAre(3));
+  EXPECT_THAT(take(), ElementsAre(number, number + 1, number + 2, number + 3));
+}
+
+TEST_F(WriteQueueTest, Writes_for_which_there_is_no_room_together_are_not_in_the_queue) {
+  for (std::size_t i = 0; i < WriteQueue::capacity - 1; ++i) push(every, static_cast<std::uint16_t>(i));
+  const std::vector<Write> writes{service_of(number, 2), service_of(number + 1, 2)};
+  EXPECT_FALSE(queue.push_together(writes));
+  EXPECT_FALSE(queue.is_pending(number));
+  EXPECT_TRUE(queue.push_together({&writes[1], 1}));
+}
+
 TEST_F(WriteQueueTest, A_point_that_comes_twice_is_not_in_one_request_twice) {
   for (const std::uint32_t point : {4U, 5U}) push(point, 1);
   push(4, 0);

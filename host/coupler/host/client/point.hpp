@@ -81,6 +81,13 @@ class Settable : public Base {
     return send(value);
   }
 
+  /// The value for Session::write_all(), which refuses what set() refuses.
+  NewValue to(const T& value) const { return make_new(value); }
+  template <class U, std::enable_if_t<is_other_number<T, U>, int> = 0>
+  NewValue to(U value) const {
+    return make_new(value);
+  }
+
   /// The device has the value from `due` on: at most an hour ahead and not more than a millisecond past. A
   /// node that can does it by its own timer, and gives the point its value from before again after `duration`
   /// if that is not 0; for every other device the client does it, without a duration (docs/driver-writes.md).
@@ -114,6 +121,12 @@ class Settable : public Base {
     Registers registers{};
     const std::string wrong = encode(value, registers);
     return wrong.empty() ? this->write(registers.data()) : refused(wrong);
+  }
+  template <class U>
+  NewValue make_new(const U& value) const {
+    Registers registers{};
+    std::string wrong = encode(value, registers);
+    return this->new_value(registers.data(), std::move(wrong));
   }
   template <class U>
   PendingSchedule send_at(const U& value, host::Time due, std::chrono::milliseconds duration) {

@@ -15,8 +15,6 @@
 namespace coupler::client {
 namespace {
 
-using host::WriteResult;
-
 /// Makes the paths absolute, so that they mean the same as long as the options exist.
 Options with_absolute_paths(Options options) {
   for (std::string* path : {&options.tls.certificate, &options.tls.key, &options.tls.ca})
@@ -75,28 +73,8 @@ Map moved(Map map, const Options& options) {
   return map;
 }
 
-SetResult copy(const WriteResult& result) { return {result.outcome, result.exception, to_string(result)}; }
-
-/// Deletes itself once it has its result: nobody else knows when that is.
-class Promise final : public host::WriteListener {
- public:
-  void on_result(const WriteResult& result) override {
-    const std::unique_ptr<Promise> ends(this);
-    promise_.set_value(copy(result));
-  }
-  PendingWrite future() { return promise_.get_future(); }
-
- private:
-  std::promise<SetResult> promise_;
-};
-
-/// Makes `write` give its result to the future. The write must be pushed, or its listener called.
-PendingWrite listen_to(host::Write& write) {
-  auto promise = std::make_unique<Promise>();
-  PendingWrite future = promise->future();
-  write.listener = promise.release();
-  return future;
-}
+constexpr host::WriteResult not_connected = {SetResult::Outcome::dropped, std::nullopt,
+                                             "not connected; call connect() first"};
 
 std::future<host::ScheduleAnswer> known(host::ScheduleAnswer answer) {
   std::promise<host::ScheduleAnswer> promise;
@@ -139,12 +117,6 @@ std::string to_string(const NoValue& why) {
   return fmt::format("cannot be read: {}",
                      why.exception ? host::to_string(host::Error(host::ExceptionReply{*why.exception}))
                                    : std::string(host::to_string(why.quality)));
-}
-
-PendingWrite refused(std::string_view why) {
-  std::promise<SetResult> known;
-  known.set_value(copy({SetResult::Outcome::refused, std::nullopt, why}));
-  return known.get_future();
 }
 
 Session::Session(const Map& map, Options options)
@@ -199,12 +171,32 @@ tl::expected<Session::Sample, NoValue> Session::sample(std::uint32_t point) cons
 PendingWrite Session::write(host::Write& write) {
   PendingWrite pending = listen_to(write);
   const std::shared_lock lock(engine_mutex_);
-  if (engine_) {
+  if (engine_)
     engine_->thread.write(write);
-  } else {
-    write.listener->on_result(
-        {SetResult::Outcome::dropped, std::nullopt, "not connected; call connect() first"});
+  else
+    write.listener->on_result(not_connected);
+  return pending;
+}
+
+PendingWrite Session::write_all(const std::vector<NewValue>& values) {
+  std::vector<host::Write> writes;
+  for (const NewValue& value : values) {
+    const std::string_view name = value.session->map_.points[value.write.point].name;
+    if (value.session != this)
+      return refused("it is a point of another client; write to each by itself", name);
+    if (!value.wrong.empty()) return refused(value.wrong, name);
+    writes.push_back(value.write);
+    writes.back().ordered = true;
   }
+  if (writes.empty()) return refused("there is no value; give one at least");
+  std::stable_sort(writes.begin(), writes.end(),
+                   [](const host::Write& a, const host::Write& b) { return a.point < b.point; });
+  PendingWrite pending = listen_to_all(writes, map_);
+  const std::shared_lock lock(engine_mutex_);
+  if (engine_)
+    engine_->thread.write_together(writes);
+  else
+    for (const host::Write& write : writes) write.listener->on_result(not_connected);
   return pending;
 }
 

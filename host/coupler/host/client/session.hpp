@@ -4,17 +4,17 @@
 #include <chrono>
 #include <condition_variable>
 #include <functional>
-#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include <tl/expected.hpp>
 
 #include "coupler/host/client/scheduling.hpp"
+#include "coupler/host/client/set_result.hpp"
 #include "coupler/host/client/value_listeners.hpp"
 #include "coupler/host/core/device_thread.hpp"
 #include "coupler/host/core/value_table.hpp"
@@ -48,24 +48,14 @@ struct NoValue {
 };
 std::string to_string(const NoValue& why);
 
-/// The result of setting a value.
-struct SetResult {
-  using Outcome = host::WriteResult::Outcome;
+class Session;
 
-  Outcome outcome = Outcome::ok;
-  std::optional<modbus::Exception> exception{};  ///< that the device answered with
-  std::string text;                              ///< what happened, in words that follow the point's name
-
-  /// The device has taken the value.
-  explicit operator bool() const { return outcome == Outcome::ok; }
+/// A value that a point is to have: see Session::write_all().
+struct NewValue {
+  const Session* session;
+  host::Write write;
+  std::string wrong{};  ///< why the point cannot have it, and which values it can have; empty if it can
 };
-
-/// get() waits for the device's answer: a few of its timeouts at most. A callback must not wait for it, since
-/// the answer comes in the same thread. It may be ignored.
-using PendingWrite = std::future<SetResult>;
-
-/// The result of a value that is not valid for its point: known at once.
-PendingWrite refused(std::string_view why);
 
 /// One coupler as the generated clients see it: a connection that reconnects by itself, the last values, and
 /// writes. It runs the engine of the ROS driver in a thread of its own, with the same poll plan, write queue
@@ -94,6 +84,11 @@ class Session {
   /// Calls `use(online())` each time that it changes; set it before connect() to miss none. The rest is as
   /// said of Input::on_change().
   void on_online(std::function<void(bool)> use);
+
+  /// Sends several values, each of which is `point.to(value)`, by table and address: neighbours in one
+  /// request, as far as the map lets them (docs/driver-writes.md). If one is not valid for its point, none is
+  /// sent.
+  PendingWrite write_all(const std::vector<NewValue>& values);
 
  protected:
   /// The storage of `map` must outlive it. The destructor of a derived class must call disconnect(): until
@@ -148,7 +143,10 @@ class PointHandle {
     return session_.sample(index_);
   }
   void listen(ValueListeners::Listener listener) { session_.listen(index_, std::move(listener)); }
-  /// `registers` as TypedValue encodes them.
+  /// `registers` as TypedValue encodes them, here and below.
+  NewValue new_value(const std::uint16_t* registers, std::string wrong) const {
+    return {&session_, make_write(registers), std::move(wrong)};
+  }
   PendingWrite write(const std::uint16_t* registers);
   PendingSchedule write_at(const std::uint16_t* registers, host::Time due,
                            std::chrono::milliseconds duration);

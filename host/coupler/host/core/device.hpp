@@ -44,10 +44,10 @@ struct Purpose {
 /// A node that tells changes of its bits is asked for them all the time, by a request whose answer it holds
 /// back. Reads are made while one is outstanding only: its answer says which changes are older than they.
 ///
-/// push(), refuse(), report_held_back(), reset_watchdog(), make_safe(), schedule(), cancel_scheduled(),
-/// cancel_all(), scheduled(), has_to_end(), answers(), end_comes(), statistics() and revision() may be called
-/// from any thread. All other functions are for the thread that owns the connection. Another thread may call
-/// send_now() if it has made sure that the owner is only waiting.
+/// push(), push_together(), refuse(), report_held_back(), reset_watchdog(), make_safe(), schedule(),
+/// cancel_scheduled(), cancel_all(), scheduled(), has_to_end(), answers(), end_comes(), statistics() and
+/// revision() may be called from any thread. All other functions are for the thread that owns the connection.
+/// Another thread may call send_now() if it has made sure that the owner is only waiting.
 class Device {
  public:
   /// `map`'s views, and everything given by reference, must outlive the device.
@@ -55,6 +55,7 @@ class Device {
 
   /// Queues a write. Its listener gets the result.
   void push(const Write& write) { writer_.push(write); }
+  void push_together(Span<const Write> writes) { writer_.push_together(writes); }
   /// Counts a value that is not valid for its point, and reports it to the listener.
   void refuse(const Write& write, std::string_view why) { writer_.refuse(write, why); }
 

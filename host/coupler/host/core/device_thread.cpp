@@ -53,6 +53,15 @@ void DeviceThread::await_stop() {
 
 void DeviceThread::write(const Write& write) {
   device_.push(write);
+  send_queued();
+}
+
+void DeviceThread::write_together(Span<const Write> writes) {
+  device_.push_together(writes);
+  send_queued();
+}
+
+void DeviceThread::send_queued() {
   if (is_over_) return device_.drop_all();
   if (owner_ == std::this_thread::get_id()) return;  // the step that is being made sees it at its end
   const std::unique_lock turn(turn_, std::try_to_lock);

@@ -75,6 +75,8 @@ class DeviceThread {
 
   /// Sends a write at once if the connection is idle, or else queues it. The sink may call it.
   void write(const Write& write);
+  /// The same for several ordered writes: see Writer.
+  void write_together(Span<const Write> writes);
   /// Counts a value that is not valid for its point, and reports it to the listener.
   void refuse(const Write& write, std::string_view why) { device_.refuse(write, why); }
   /// See Writer. Call it a few times a second.
@@ -108,6 +110,7 @@ class DeviceThread {
  private:
   void run();
   Time step();
+  void send_queued();
   bool send_now();
   template <class Work>
   Time attempt(Work work);

@@ -47,6 +47,17 @@ WriteQueue::Class& WriteQueue::class_of(const Write& write) {
 
 WriteQueue::Pushed WriteQueue::push(const Write& write) {
   const std::lock_guard lock(mutex_);
+  return push_locked(write);
+}
+
+bool WriteQueue::push_together(Span<const Write> writes) {
+  const std::lock_guard lock(mutex_);
+  if (std::max(high_.ordered, normal_.ordered) + writes.size() > capacity) return false;
+  for (const Write& write : writes) push_locked(write);
+  return true;
+}
+
+WriteQueue::Pushed WriteQueue::push_locked(const Write& write) {
   if (write.until != Time::max()) any_may_be_late_ = true;
   Class& own = class_of(write);
   Waiting& waiting = waiting_[write.point];

@@ -37,6 +37,9 @@ class WriteQueue {
     std::optional<Write> superseded{};  ///< the write that is no longer in the queue
   };
   Pushed push(const Write& write);
+  /// Adds ordered writes with none between those of one class. Returns false if there is no room for all of
+  /// them; then none is in the queue.
+  bool push_together(Span<const Write> writes);
 
   /// Moves the first write, and those behind it in its class that fit into the same request, to the empty
   /// `batch`. Without `merge` it moves only the first, and without `may_read` none that needs a read before.
@@ -92,6 +95,7 @@ class WriteQueue {
   /// Takes the first write for which `which(write)` is true.
   template <class Which>
   std::optional<Write> take_if(Which which);
+  Pushed push_locked(const Write& write);
   void settle(Waiting& waiting);
   bool is_ordered(const Write& write) const;
   bool joins(const Write& newer, const Write& older) const;

@@ -11,6 +11,9 @@ namespace {
 
 using Outcome = WriteResult::Outcome;
 
+constexpr WriteResult no_room = {Outcome::dropped, std::nullopt,
+                                 "too many writes are waiting; write less often"};
+
 /// With these the device has carried out nothing of a request and never will. The cause may be how it was put
 /// together: a device that takes one value only, or one of several that it does not have.
 bool is_wrong(modbus::Exception code) {
@@ -45,23 +48,49 @@ Writer::Writer(const Map& map, Link& link, DeviceStatistics& statistics, ValueTa
     if (tool_with_output(map, map.points[i].name) != nullptr) is_safe_point_[i] = true;
 }
 
-void Writer::push(const Write& write) {
+/// Empty: the point may have this value.
+std::string Writer::why_forbidden(const Write& write) const {
   const Point& point = map_.points[write.point];
-  if (const auto forbidden = find_forbidden(point, write.registers.data())) {
-    const std::string why =
-        fmt::format("{}; send {}", forbidden_text(point, *forbidden), allowed_text(point));
-    const WriteResult wrong = {Outcome::refused, std::nullopt, why};
-    tell(write, wrong);
-    report(write, wrong);
-    return;
-  }
+  const auto forbidden = find_forbidden(point, write.registers.data());
+  return forbidden ? fmt::format("{}; send {}", forbidden_text(point, *forbidden), allowed_text(point))
+                   : std::string();
+}
+
+void Writer::refuse_forbidden(const Write& write, std::string_view why) {
+  const WriteResult wrong = {Outcome::refused, std::nullopt, why};
+  tell(write, wrong);
+  report(write, wrong);
+}
+
+void Writer::push(const Write& write) {
+  if (const std::string why = why_forbidden(write); !why.empty()) return refuse_forbidden(write, why);
   const WriteQueue::Pushed pushed = queue_.push(write);
   if (pushed.accepted) deadmen_.fed(write.point, clock_.now());
   if (pushed.superseded) tell(*pushed.superseded, {Outcome::superseded});
   if (pushed.accepted) return;
-  const WriteResult full = {Outcome::dropped, std::nullopt, "too many writes are waiting; write less often"};
-  tell(write, full);
-  report(write, full);
+  tell(write, no_room);
+  report(write, no_room);
+}
+
+void Writer::push_together(Span<const Write> writes) {
+  for (const Write& wrong : writes)
+    if (const std::string why = why_forbidden(wrong); !why.empty()) {
+      refuse_forbidden(wrong, why);
+      const std::string beside =
+          fmt::format("the value of {}, which is written together with it, is refused", name(wrong.point));
+      for (const Write& other : writes)
+        if (&other != &wrong) tell(other, {Outcome::dropped, std::nullopt, beside});
+      return;
+    }
+  const bool accepted = queue_.push_together(writes);
+  for (const Write& write : writes) {
+    if (accepted) {
+      deadmen_.fed(write.point, clock_.now());
+      continue;
+    }
+    tell(write, no_room);
+    report(write, no_room);
+  }
 }
 
 void Writer::refuse(const Write& write, std::string_view why) {

@@ -37,8 +37,8 @@ class WrittenListener {
 /// Writes to one device: sends the queued writes, reports the result of each, and makes the writes of
 /// deadmen, those after a reconnect and those at the end.
 ///
-/// Any thread may call push(), refuse(), ask_safe() and report_held_back(). Only the thread that uses the
-/// link may call the other functions.
+/// Any thread may call push(), push_together(), refuse(), ask_safe() and report_held_back(). Only the thread
+/// that uses the link may call the other functions.
 class Writer {
  public:
   /// All references must outlive the writer.
@@ -49,6 +49,9 @@ class Writer {
 
   /// Refuses NaN and infinity.
   void push(const Write& write);
+  /// Pushes ordered writes that are to be sent one after the other, neighbours in one request. If one of them
+  /// is refused, or there is no room for all, none is sent.
+  void push_together(Span<const Write> writes);
   /// Reports a value that is not valid for its point.
   void refuse(const Write& write, std::string_view why);
   /// Writes the safe values, whatever `on_shutdown` says, after the request in flight and before all that is
@@ -120,6 +123,8 @@ class Writer {
   std::uint64_t take_dropped() { return std::exchange(dropped_, 0); }
 
  private:
+  std::string why_forbidden(const Write& write) const;
+  void refuse_forbidden(const Write& write, std::string_view why);
   void fire_deadmen();
   void wait_again();
   Result<> not_sent(const Error& why);
