@@ -106,7 +106,10 @@ class OverTls(made.Made):
         self.assertIsInstance(refused.__cause__, self.module.Lost)
 
     def test_a_pin_believes_one_certificate(self):
-        pins = [self.coupler("pin", f"{plant}/node/node.pem").stdout.split()[0] for plant in ("plant", "stranger")]
+        shown = [self.coupler("pin", f"{plant}/node/node.pem") for plant in ("plant", "stranger")]
+        if "built without libmodbus" in shown[0].stderr:
+            self.skipTest("this build has no coupler pin")
+        pins = [one.stdout.split()[0] for one in shown]
         self.carries_values(self.tls(ca="", pin=pins[0], name="whoever"))
         self.carries_values(self.tls(ca="", pin=pins[0].upper().replace("SHA", "sha")))
         self.assertIn(f"has the pin {pins[0]}", str(self.fails(self.tls(ca="", pin=pins[1]))))
