@@ -99,13 +99,13 @@ class Process:
         finally:
             self._child.send_signal(signal.SIGCONT)
 
-    def wait_for(self, text):
+    def wait_for(self, text, seconds=PATIENCE):
         """Until the program has printed the text."""
-        self._wait_until(lambda: text in self.output, f"'{text}'")
+        self._wait_until(lambda: text in self.output, f"'{text}'", seconds)
 
-    def _wait_until(self, condition, what):
+    def _wait_until(self, condition, what, seconds=PATIENCE):
         with self._news:
-            self._news.wait_for(lambda: condition() or self._ended, PATIENCE)
+            self._news.wait_for(lambda: condition() or self._ended, seconds)
             if not condition():
                 raise AssertionError(f"{what} was not printed, but:\n{self.output}")
 
