@@ -80,12 +80,10 @@ TEST_F(PumpClient, A_callback_may_take_itself_and_others_back) {
 }
 
 TEST_F(PumpClient, What_a_callback_throws_is_reported_once) {
-  std::mutex mutex;
-  std::vector<std::string> reports;
+  Reports reports;
   Options listening = options();
   listening.on_report = [&](Level, const std::string& text) {
-    const std::lock_guard lock(mutex);
-    reports.push_back(text);
+    reports.add(text);
     throw std::runtime_error("nor is this one's end the connection's");
   };
   std::atomic<int> calls{0};
@@ -100,7 +98,7 @@ TEST_F(PumpClient, What_a_callback_throws_is_reported_once) {
   ASSERT_TRUE(becomes([&] { return calls == 2; }));
   EXPECT_TRUE(other.valve.set(true).get());
   other.disconnect();
-  EXPECT_EQ(std::count_if(reports.begin(), reports.end(),
+  EXPECT_EQ(std::count_if(reports.texts.begin(), reports.texts.end(),
                           [](const std::string& text) {
                             return text.find("pressure: its callback threw an exception: of the table") == 0;
                           }),
@@ -164,20 +162,17 @@ TEST_F(PumpClient, It_is_told_when_the_device_comes_and_goes) {
 }
 
 TEST_F(PumpClient, What_it_throws_when_told_so_is_reported_and_the_connection_goes_on) {
-  std::mutex mutex;
-  std::vector<std::string> reports;
+  Reports reports;
   Options listening = options();
-  listening.on_report = [&](Level, const std::string& text) {
-    const std::lock_guard lock(mutex);
-    reports.push_back(text);
-  };
+  listening.on_report = [&](Level, const std::string& text) { reports.add(text); };
   maps::pump::Client other(listening);
   other.on_online([](bool) { throw std::runtime_error("no recipe"); });
   other.connect();
   EXPECT_TRUE(other.running.wait(soon));
   other.disconnect();
-  EXPECT_THAT(reports, ::testing::Contains(
-                           ::testing::HasSubstr("on_online: its callback threw an exception: no recipe")));
+  EXPECT_THAT(
+      reports.texts,
+      ::testing::Contains(::testing::HasSubstr("on_online: its callback threw an exception: no recipe")));
 }
 
 }  // namespace

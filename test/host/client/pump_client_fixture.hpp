@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <mutex>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "pump_client.hpp"
 #include "test/host/modbus/modbus_server.hpp"
@@ -12,6 +15,17 @@
 namespace coupler::client {
 
 constexpr std::chrono::seconds soon(20);
+
+/// Keeps what a client reports. `texts` may be read while the client has no connection.
+struct Reports {
+  void add(const std::string& text) {
+    const std::lock_guard lock(mutex);
+    texts.push_back(text);
+  }
+
+  std::mutex mutex;
+  std::vector<std::string> texts;
+};
 
 /// A generated client, config/examples/pump, and a server that libmodbus makes.
 struct PumpClient : ::testing::Test {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "pump_client.hpp"
+#include "test/host/client/pump_client_fixture.hpp"
 #include "test/host/modbus/tls_front.hpp"
 
 namespace coupler::client {
@@ -29,10 +29,7 @@ struct ClientTls : ::testing::Test {
     EXPECT_EQ(::chmod((folder / "own.key").c_str(), 0600), 0);
     options.address = "127.0.0.1";
     options.port = front.port();
-    options.on_report = [this](Level, const std::string& text) {
-      const std::lock_guard lock(mutex);
-      reports.push_back(text);
-    };
+    options.on_report = [this](Level, const std::string& text) { reports.add(text); };
   }
   ~ClientTls() override { std::filesystem::remove_all(folder); }
   std::string path(const char* name) const { return (folder / name).string(); }
@@ -41,8 +38,7 @@ struct ClientTls : ::testing::Test {
   host::test::TlsFront front{server.port(), tls::credentials_of(tls::test_node())};
   std::filesystem::path folder;
   Options options;
-  std::mutex mutex;
-  std::vector<std::string> reports;
+  Reports reports;
 };
 
 TEST_F(ClientTls, The_options_take_the_place_of_what_the_map_does_not_say) {
@@ -56,19 +52,19 @@ TEST_F(ClientTls, What_is_missing_is_named) {
   options.tls.certificate = path("own.pem");
   options.tls.key = path("own.key");
   maps::pump::Client pump{options};
-  EXPECT_THAT(reports, ElementsAre(AllOf(HasSubstr("TLS needs 'ca', too"), HasSubstr("Options::tls"))));
+  EXPECT_THAT(reports.texts, ElementsAre(AllOf(HasSubstr("TLS needs 'ca', too"), HasSubstr("Options::tls"))));
 }
 
 TEST_F(ClientTls, An_address_with_TLS_needs_certificates) {
   options.address = "tls://127.0.0.1";
   maps::pump::Client pump{options};
-  EXPECT_THAT(reports, ElementsAre(HasSubstr("there are no certificates for TLS")));
+  EXPECT_THAT(reports.texts, ElementsAre(HasSubstr("there are no certificates for TLS")));
 }
 
 TEST_F(ClientTls, A_pin_that_is_none_is_named) {
   options.tls = {path("own.pem"), path("own.key"), {}, {}, "sha256:12", {}};
   maps::pump::Client pump{options};
-  EXPECT_THAT(reports, ElementsAre(HasSubstr("'sha256:12' is no pin")));
+  EXPECT_THAT(reports.texts, ElementsAre(HasSubstr("'sha256:12' is no pin")));
 }
 
 }  // namespace

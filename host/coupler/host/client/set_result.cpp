@@ -13,37 +13,23 @@ namespace {
 
 using host::WriteResult;
 
-SetResult copy(const WriteResult& result) { return {result.outcome, result.exception, to_string(result)}; }
-
+/// The text begins with the name, if there is one.
 SetResult copy(const WriteResult& result, std::string_view name) {
-  SetResult copied = copy(result);
-  if (!name.empty()) copied.text = fmt::format("{}: {}", name, copied.text);
-  return copied;
+  std::string text = to_string(result);
+  if (!name.empty()) text = fmt::format("{}: {}", name, text);
+  return {result.outcome, result.exception, std::move(text)};
 }
 
-/// Deletes itself once it has its result: nobody else knows when that is.
-class Promise final : public host::WriteListener {
+/// The promise of one write or more. Their results may come from two threads.
+class Promise {
  public:
-  void on_result(const WriteResult& result) override {
-    const std::unique_ptr<Promise> ends(this);
-    promise_.set_value(copy(result));
-  }
-  PendingWrite future() { return promise_.get_future(); }
-
- private:
-  std::promise<SetResult> promise_;
-};
-
-/// The promise of several writes. Their results may come from two threads.
-class JointPromise {
- public:
-  explicit JointPromise(std::size_t writes) : missing_(writes) {}
+  explicit Promise(std::size_t writes) : missing_(writes) {}
   PendingWrite future() { return promise_.get_future(); }
 
   void add(const WriteResult& result, std::string_view name) {
     const std::lock_guard lock(mutex_);
     if (result.outcome != WriteResult::Outcome::ok && !failure_) failure_ = copy(result, name);
-    if (--missing_ == 0) promise_.set_value(failure_ ? *std::move(failure_) : copy(WriteResult{}));
+    if (--missing_ == 0) promise_.set_value(failure_ ? *std::move(failure_) : copy({}, {}));
   }
 
  private:
@@ -53,18 +39,18 @@ class JointPromise {
   std::promise<SetResult> promise_;
 };
 
-/// Deletes itself as Promise does.
+/// The listener of one of them. It deletes itself once it has its result: nobody else knows when that is.
 class Part final : public host::WriteListener {
  public:
-  /// The name must be valid until then.
-  Part(std::shared_ptr<JointPromise> whole, std::string_view name) : whole_(std::move(whole)), name_(name) {}
+  /// The name, which may be empty, must be valid until then.
+  Part(std::shared_ptr<Promise> whole, std::string_view name) : whole_(std::move(whole)), name_(name) {}
   void on_result(const WriteResult& result) override {
     const std::unique_ptr<Part> ends(this);
     whole_->add(result, name_);
   }
 
  private:
-  std::shared_ptr<JointPromise> whole_;
+  std::shared_ptr<Promise> whole_;
   std::string_view name_;
 };
 
@@ -77,14 +63,13 @@ PendingWrite refused(std::string_view why, std::string_view name) {
 }
 
 PendingWrite listen_to(host::Write& write) {
-  auto promise = std::make_unique<Promise>();
-  PendingWrite future = promise->future();
-  write.listener = promise.release();
-  return future;
+  const auto whole = std::make_shared<Promise>(1);
+  write.listener = std::make_unique<Part>(whole, std::string_view()).release();
+  return whole->future();
 }
 
 PendingWrite listen_to_all(std::vector<host::Write>& writes, const Map& map) {
-  const auto whole = std::make_shared<JointPromise>(writes.size());
+  const auto whole = std::make_shared<Promise>(writes.size());
   std::vector<std::unique_ptr<Part>> parts;
   parts.reserve(writes.size());
   for (const host::Write& write : writes)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What became of values that were set.
+// Holds the results of setting values.
 #pragma once
 
 #include <future>

@@ -56,26 +56,25 @@ std::string Writer::why_forbidden(const Write& write) const {
                    : std::string();
 }
 
-void Writer::refuse_forbidden(const Write& write, std::string_view why) {
-  const WriteResult wrong = {Outcome::refused, std::nullopt, why};
-  tell(write, wrong);
-  report(write, wrong);
+/// It does not get into the queue: its listener and the log hear so.
+void Writer::reject(const Write& write, const WriteResult& result) {
+  tell(write, result);
+  report(write, result);
 }
 
 void Writer::push(const Write& write) {
-  if (const std::string why = why_forbidden(write); !why.empty()) return refuse_forbidden(write, why);
+  if (const std::string why = why_forbidden(write); !why.empty())
+    return reject(write, {Outcome::refused, std::nullopt, why});
   const WriteQueue::Pushed pushed = queue_.push(write);
   if (pushed.accepted) deadmen_.fed(write.point, clock_.now());
   if (pushed.superseded) tell(*pushed.superseded, {Outcome::superseded});
-  if (pushed.accepted) return;
-  tell(write, no_room);
-  report(write, no_room);
+  if (!pushed.accepted) reject(write, no_room);
 }
 
 void Writer::push_together(Span<const Write> writes) {
   for (const Write& wrong : writes)
     if (const std::string why = why_forbidden(wrong); !why.empty()) {
-      refuse_forbidden(wrong, why);
+      reject(wrong, {Outcome::refused, std::nullopt, why});
       const std::string beside =
           fmt::format("the value of {}, which is written together with it, is refused", name(wrong.point));
       for (const Write& other : writes)
@@ -84,12 +83,10 @@ void Writer::push_together(Span<const Write> writes) {
     }
   const bool accepted = queue_.push_together(writes);
   for (const Write& write : writes) {
-    if (accepted) {
+    if (accepted)
       deadmen_.fed(write.point, clock_.now());
-      continue;
-    }
-    tell(write, no_room);
-    report(write, no_room);
+    else
+      reject(write, no_room);
   }
 }
 

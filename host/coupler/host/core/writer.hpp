@@ -124,7 +124,7 @@ class Writer {
 
  private:
   std::string why_forbidden(const Write& write) const;
-  void refuse_forbidden(const Write& write, std::string_view why);
+  void reject(const Write& write, const WriteResult& result);
   void fire_deadmen();
   void wait_again();
   Result<> not_sent(const Error& why);
