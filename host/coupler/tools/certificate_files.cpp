@@ -85,14 +85,14 @@ tl::expected<void, std::string> write_new(const fs::path& path, const std::strin
 }
 
 tl::expected<void, std::string> replace(const std::vector<NewFile>& files) {
+  const auto failed = [&](const NewFile& file, int error) {
+    for (const NewFile& each : files) ::unlink(unfinished(each.path).c_str());
+    return cannot_be_written(file.path, error);
+  };
   for (const NewFile& file : files)
-    if (const int error = begin(file); error != 0) {
-      for (const NewFile& each : files) ::unlink(unfinished(each.path).c_str());
-      return cannot_be_written(file.path, error);
-    }
+    if (const int error = begin(file); error != 0) return failed(file, error);
   for (const NewFile& file : files)
-    if (::rename(unfinished(file.path).c_str(), file.path.c_str()) != 0)
-      return cannot_be_written(file.path, errno);
+    if (::rename(unfinished(file.path).c_str(), file.path.c_str()) != 0) return failed(file, errno);
   return {};
 }
 

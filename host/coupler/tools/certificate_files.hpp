@@ -30,8 +30,9 @@ struct NewFile {
   std::string text;
   bool is_secret;  ///< only its owner can read it
 };
-/// Writes files to a folder of make_folder(), in this order, in place of those that have their names. Returns
-/// an error if one of them cannot be written; all are as they were then.
+/// Writes files to a folder of make_folder(), and then puts them, in this order, in place of those that have
+/// their names. Returns an error if one of them cannot be written; all are as they were then. One that cannot
+/// be put in its place, as where a folder has its name, leaves those before it in theirs.
 tl::expected<void, std::string> replace(const std::vector<NewFile>& files);
 
 /// NAME, NAME-2, NAME-3 …: each request (--csr) has a number, as renewed certificates once had. The newest
