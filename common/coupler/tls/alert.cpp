@@ -59,8 +59,7 @@ std::string objection_to_server(const SSL* ssl) {
            "pin";
   constexpr const char* remedy =
       "let it connect by one that the certificate has, or give it that as 'name' (an option: --tls-name), or "
-      "make "
-      "a certificate that has the other one, too ('coupler certificates --node')";
+      "make a certificate that has the other one, too ('coupler certificates --node')";
   if (is_known)
     return fmt::format("it connects as '{}', and this certificate is for another name or address{}; {}", name,
                        names_text(own), remedy);

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/starts_with.hpp"
 #include "coupler/generate/output.hpp"
 #include "coupler/map/loader/load.hpp"
 #include "coupler/map/loader/preset.hpp"
@@ -126,7 +127,7 @@ std::string with_modicon_numbers(std::string_view points) {
   for (std::string line; std::getline(lines, line);) {
     std::optional<Table> begins;
     for (const Table each : tables)
-      if (line.rfind(fmt::format("  {}:", to_string(each)), 0) == 0) begins = each;
+      if (starts_with(line, fmt::format("  {}:", to_string(each)))) begins = each;
     text += (begins || !table ? line : with_modicon_number(line, *table)) + '\n';
     if (begins) table = begins;
   }

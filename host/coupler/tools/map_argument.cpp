@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <tl/expected.hpp>
 
+#include "coupler/base/starts_with.hpp"
 #include "coupler/generate/output.hpp"
 #include "coupler/map/network.hpp"
 #include "coupler/tools/live_map.hpp"
@@ -132,7 +133,7 @@ tl::expected<std::string, std::string> git_show(const std::string& object) {
   if (status == could_not_run) return tl::unexpected<std::string>("git could not be run");
   std::string said = error.content();
   said = said.substr(0, said.find('\n'));
-  return tl::unexpected<std::string>(said.rfind("fatal: ", 0) == 0 ? said.substr(7) : said);
+  return tl::unexpected<std::string>(starts_with(said, "fatal: ") ? said.substr(7) : said);
 }
 
 /// REVISION:PATH, and neither a file of that name nor HOST:PORT.

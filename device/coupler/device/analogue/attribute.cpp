@@ -12,6 +12,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "coupler/base/starts_with.hpp"
+
 namespace coupler::device {
 
 tl::expected<Attribute, int> Attribute::open(const std::string& path, For purpose) {
@@ -55,7 +57,7 @@ std::vector<std::string> names_in(const std::string& folder, const std::string& 
   std::vector<std::string> names;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error))
-    if (std::string name = entry.path().filename(); name.rfind(prefix, 0) == 0) names.push_back(name);
+    if (std::string name = entry.path().filename(); starts_with(name, prefix)) names.push_back(name);
   std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
     return a.size() != b.size() ? a.size() < b.size() : a < b;
   });

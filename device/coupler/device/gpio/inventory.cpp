@@ -8,6 +8,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "coupler/base/starts_with.hpp"
+
 namespace coupler::device {
 namespace {
 
@@ -52,7 +54,7 @@ Inventory::Inventory(ReadChip read, const std::string& folder) {
   std::error_code error;
   // Raspberry Pi OS has a link gpiochip4 to gpiochip0: followed, each of its names would belong to two lines.
   for (const auto& entry : std::filesystem::directory_iterator(folder, error))
-    if (entry.path().filename().string().rfind("gpiochip", 0) == 0 && !entry.is_symlink(error))
+    if (starts_with(entry.path().filename().string(), "gpiochip") && !entry.is_symlink(error))
       paths.push_back(entry.path().string());
   std::sort(paths.begin(), paths.end(), shorter_first);
   for (const std::string& path : paths) {

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "coupler/base/starts_with.hpp"
 #include "coupler/device/net/client_address.hpp"
 #include "coupler/device/net/client_socket.hpp"
 #include "coupler/map/nearest.hpp"
@@ -173,7 +174,7 @@ void TlsServer::failed(const TlsConnection& connection, const std::string& probl
   log_.warn_limited(
       "refused: " + problem.substr(0, 24),
       fmt::format("{} {}: {}{}", host_of(connection.address()),
-                  problem.rfind(tls::refuses, 0) == 0 ? "did not connect" : "was refused", problem,
+                  starts_with(problem, tls::refuses) ? "did not connect" : "was refused", problem,
                   problem == tls::no_tls ? "; clients without TLS have the node's other port" : ""));
 }
 

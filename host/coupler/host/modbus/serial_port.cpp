@@ -25,6 +25,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "coupler/base/starts_with.hpp"
 #include "coupler/map/fields.hpp"
 
 namespace coupler::host {
@@ -42,7 +43,7 @@ std::vector<std::string> ports_of_adapters() {
   if (!found.empty()) return found;
   for (fs::directory_iterator port("/dev", none), end; !none && port != end; port.increment(none)) {
     const std::string name = port->path().filename();
-    if (name.rfind("ttyUSB", 0) == 0 || name.rfind("ttyACM", 0) == 0) found.push_back(port->path());
+    if (starts_with(name, "ttyUSB") || starts_with(name, "ttyACM")) found.push_back(port->path());
   }
   return found;
 }
