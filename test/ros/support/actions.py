@@ -4,7 +4,7 @@ import os
 import subprocess
 
 from support import process
-from support.patience import PATIENCE, wait_until
+from support.patience import PATIENCE, once_more, wait_until
 from support.times import ros_duration, ros_time
 
 SUCCEEDED, ABORTED, CANCELED = "succeeded", "aborted", "canceled"
@@ -25,17 +25,12 @@ if IS_ROS2:
         """A goal that was sent."""
 
         def __init__(self, client, goal):
-            # The first answer to a client may be lost in Fast DDS (support/topics.py), so a goal that seems lost is sent once more.
-            for is_last in (False, True):
+            def send():
                 self.feedback = []
                 self._accepted = client.send_goal_async(goal, lambda message: self.feedback.append(message.feedback))
-                try:
-                    wait_until(self._accepted.done, "the answer to a goal", PATIENCE / 2)
-                    break
-                except AssertionError as error:
-                    print(error)
-                    if is_last:
-                        raise
+                wait_until(self._accepted.done, "the answer to a goal", PATIENCE / 2)
+
+            once_more(send)  # Fast DDS may lose the first answer to a client (support/topics.py)
             self.is_accepted = self._accepted.result().accepted
             self._result = self._accepted.result().get_result_async()
 

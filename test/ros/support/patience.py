@@ -27,6 +27,15 @@ def wait_until(condition, what, seconds=PATIENCE):
         time.sleep(0.005)
 
 
+def once_more(attempt):
+    """What attempt() returns. If it fails, that is printed, and it is made once more: for what the middleware may lose."""
+    try:
+        return attempt()
+    except AssertionError as error:
+        print(error)
+        return attempt()
+
+
 def stay_quiet(topics):
     """Nothing is published on any of them from now on."""
     for topic in topics:

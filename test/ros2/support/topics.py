@@ -8,7 +8,7 @@ import time
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from support.patience import PATIENCE, stay_quiet, wait_until
+from support.patience import PATIENCE, once_more, stay_quiet, wait_until
 from support.ros import polled, spun
 
 STEP = 0.005  # seconds from a look to the next
@@ -246,17 +246,17 @@ def service(name, kind, seconds=PATIENCE):
     fields = list(kind.Request.get_fields_and_field_types())
 
     def call(*arguments):
-        # Fast DDS drops an answer if the service's end has not matched the client yet, though the client's end has. So a call
-        # that seems lost is made once more.
-        for _ in range(2):
+        def attempt():
             done = threading.Event()
             future = client.call_async(kind.Request(**dict(zip(fields, arguments))))
-            future.add_done_callback(lambda _, done=done: done.set())
+            future.add_done_callback(lambda _: done.set())
             if done.wait(PATIENCE / 2):
                 return future.result()
             client.remove_pending_request(future)
-            print(f"{name} has not answered in {PATIENCE / 2} s: {arguments}")
-        raise AssertionError(f"{name} has not answered in {PATIENCE} s")
+            raise AssertionError(f"{name} has not answered in {PATIENCE / 2} s: {arguments}")
+
+        # Fast DDS drops an answer if the service's end has not matched the client yet, though the client's end has.
+        return once_more(attempt)
 
     return call
 
